@@ -1,0 +1,1 @@
+//! Actions, transient states, and the search space of a robot.

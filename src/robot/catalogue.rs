@@ -1,0 +1,66 @@
+//! Module types and the connectors they carry.
+
+use crate::spatial::Vec3;
+use crate::statics::Connector;
+
+/// A convex solid, centred on its own frame.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Shape {
+    /// A box with these half extents in m.
+    Cuboid {
+        /// Half of the edge lengths along x, y and z in m, positive.
+        half_extents: Vec3,
+    },
+}
+
+/// One rigid body of a module type.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BodyType {
+    /// Name within the module type.
+    pub name: String,
+    /// Mass in kg.
+    pub mass: f64,
+    /// Centre of mass in the module frame, in m.
+    pub com: Vec3,
+    /// Solid, centred on the module frame.
+    pub shape: Shape,
+}
+
+/// What makes a module type a lattice module: cubes that dock face to face.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LatticeType {
+    /// Edge length of a cell in m.
+    pub pitch: f64,
+    /// Connector on every face: index into [`Catalogue::connectors`]. A patch
+    /// connector without points takes the corners of the face it sits on.
+    pub face: usize,
+    /// Connector that holds the module at a shared edge while it pivots, z
+    /// along the edge: index into [`Catalogue::connectors`].
+    pub hinge: Option<usize>,
+    /// Whether it can slide over the faces of two coplanar neighbours.
+    pub slide: bool,
+    /// Whether it can pivot about an edge shared with a neighbour.
+    pub pivot: bool,
+}
+
+/// A kind of module.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ModuleType {
+    /// Name that configurations use.
+    pub name: String,
+    /// Its one rigid body.
+    pub body: BodyType,
+    /// How it sits in the lattice, docks and moves.
+    pub lattice: LatticeType,
+}
+
+/// A set of module types with their connectors.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Catalogue {
+    /// Name (of a built-in) or where it was read from.
+    pub name: String,
+    /// Connector models.
+    pub connectors: Vec<Connector>,
+    /// Module types.
+    pub module_types: Vec<ModuleType>,
+}

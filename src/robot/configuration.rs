@@ -1,0 +1,134 @@
+//! A robot in its environment at one moment.
+
+use std::sync::Arc;
+
+use crate::spatial::{Pose, Vec3};
+
+use super::catalogue::{Catalogue, Shape};
+use super::lattice::{Face, Placement};
+
+/// A module of a configuration.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Module {
+    /// Unique name.
+    pub id: String,
+    /// Index into [`Catalogue::module_types`].
+    pub module_type: usize,
+    /// Where it is.
+    pub placement: Placement,
+    /// Whether it is held immovably (and never moves in a plan).
+    pub fixed: bool,
+}
+
+/// A face of a module, in the **module's own** axes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Port {
+    /// Index into [`Configuration::modules`].
+    pub module: usize,
+    /// Which of its faces.
+    pub face: Face,
+}
+
+/// An engaged connection between two coinciding faces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct FaceConnection {
+    /// The two ports, the smaller one first.
+    pub ports: [Port; 2],
+}
+
+/// Horizontal frictional ground, filling everything below its height.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ground {
+    /// z of its surface in m.
+    pub height: f64,
+    /// Friction coefficient.
+    pub friction: f64,
+}
+
+/// An immovable solid: modules collide with it and rest on it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Obstacle {
+    /// Its shape.
+    pub shape: Shape,
+    /// Its pose in W.
+    pub pose: Pose,
+    /// Friction coefficient of its surface.
+    pub friction: f64,
+}
+
+/// What surrounds the robot.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Environment {
+    /// The ground, if there is one.
+    pub ground: Option<Ground>,
+    /// Further solids.
+    pub obstacles: Vec<Obstacle>,
+    /// Friction coefficient between unconnected modules.
+    pub module_friction: f64,
+}
+
+/// An external wrench that stays on a module wherever it goes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ModuleLoad {
+    /// Index into [`Configuration::modules`].
+    pub module: usize,
+    /// Force in N, in W.
+    pub force: Vec3,
+    /// Torque in N m, in W.
+    pub torque: Vec3,
+    /// Point of action in the module frame, in m; the centre of mass when `None`.
+    pub at: Option<Vec3>,
+}
+
+/// What every transient state must satisfy.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Requirement {
+    /// Smallest admissible internal stability margin.
+    pub margin: f64,
+    /// Whether all modules must stay connected.
+    pub connected: bool,
+}
+
+impl Default for Requirement {
+    fn default() -> Self {
+        Self { margin: 0.0, connected: true }
+    }
+}
+
+/// A robot, its surroundings and its loads.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Configuration {
+    /// What the modules are made of.
+    pub catalogue: Arc<Catalogue>,
+    /// Gravity in m/s^2, in W.
+    pub gravity: Vec3,
+    /// Ground and obstacles.
+    pub environment: Environment,
+    /// The modules.
+    pub modules: Vec<Module>,
+    /// The engaged connections, sorted.
+    pub connections: Vec<FaceConnection>,
+    /// External loads.
+    pub loads: Vec<ModuleLoad>,
+    /// What transient states must satisfy.
+    pub require: Requirement,
+}
+
+/// How a goal is compared with a state.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Matching {
+    /// Whether every module must be at its own place (by id), rather than any
+    /// module of the same type.
+    pub labelled: bool,
+    /// Whether the goal is met up to a displacement over the ground.
+    pub free_frame: bool,
+}
+
+/// A configuration to reach; its environment, gravity and loads are the start's.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Goal {
+    /// Modules and connections to reach.
+    pub configuration: Configuration,
+    /// How it is compared.
+    pub matching: Matching,
+}

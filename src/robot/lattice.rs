@@ -1,0 +1,124 @@
+//! Integer placements in the cubic lattice, from which poses are derived: a
+//! plan run forwards and backwards returns the identical state.
+
+/// A lattice cell: it fills `[x, x+1] x [y, y+1] x [z, z+1]` times the pitch.
+pub type Cell = [i32; 3];
+
+/// One of the six faces of a cube, by its outward normal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Face {
+    /// Normal -x.
+    NegX,
+    /// Normal +x.
+    PosX,
+    /// Normal -y.
+    NegY,
+    /// Normal +y.
+    PosY,
+    /// Normal -z.
+    NegZ,
+    /// Normal +z.
+    PosZ,
+}
+
+impl Face {
+    /// All faces, in the order used everywhere.
+    pub const ALL: [Self; 6] = [Self::NegX, Self::PosX, Self::NegY, Self::PosY, Self::NegZ, Self::PosZ];
+
+    /// Outward normal, as a step to the neighbouring cell.
+    pub const fn step(self) -> Cell {
+        match self {
+            Self::NegX => [-1, 0, 0],
+            Self::PosX => [1, 0, 0],
+            Self::NegY => [0, -1, 0],
+            Self::PosY => [0, 1, 0],
+            Self::NegZ => [0, 0, -1],
+            Self::PosZ => [0, 0, 1],
+        }
+    }
+
+    /// The face with this outward normal, if it is a unit step.
+    pub fn from_step(step: Cell) -> Option<Self> {
+        Self::ALL.into_iter().find(|face| face.step() == step)
+    }
+
+    /// The face on the other side.
+    #[must_use]
+    pub const fn opposite(self) -> Self {
+        match self {
+            Self::NegX => Self::PosX,
+            Self::PosX => Self::NegX,
+            Self::NegY => Self::PosY,
+            Self::PosY => Self::NegY,
+            Self::NegZ => Self::PosZ,
+            Self::PosZ => Self::NegZ,
+        }
+    }
+
+    /// Name as files write it, e.g. `+x`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::NegX => "-x",
+            Self::PosX => "+x",
+            Self::NegY => "-y",
+            Self::PosY => "+y",
+            Self::NegZ => "-z",
+            Self::PosZ => "+z",
+        }
+    }
+
+    /// The face that files call `name`.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|face| face.name() == name)
+    }
+}
+
+/// One of the 24 rotations of a cube, as an integer matrix of the module's
+/// axes in the world: column j is where the module's axis j points.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Orientation([[i8; 3]; 3]);
+
+impl Orientation {
+    /// Module axes along the world axes.
+    pub const IDENTITY: Self = Self([[1, 0, 0], [0, 1, 0], [0, 0, 1]]);
+
+    /// The rows of the rotation matrix.
+    pub const fn rows(self) -> [[i8; 3]; 3] {
+        self.0
+    }
+
+    /// The quarter turn about the outward normal of `axis`, right-handed.
+    pub fn quarter_turn(axis: Face) -> Self {
+        let [x, y, z] = axis.step().map(|s| s as i8);
+        // R = n n^T + [n]_x for a turn of 90 degrees about the unit vector n.
+        Self([[x * x, x * y - z, x * z + y], [y * x + z, y * y, y * z - x], [z * x - y, z * y + x, z * z]])
+    }
+
+    /// This orientation turned further by `turn`, about world axes.
+    #[must_use]
+    pub fn turned(self, turn: Self) -> Self {
+        let (a, b) = (turn.0, self.0);
+        Self(std::array::from_fn(|i| std::array::from_fn(|j| (0..3).map(|k| a[i][k] * b[k][j]).sum())))
+    }
+
+    /// The world direction that the module's face points in.
+    pub fn to_world(self, face: Face) -> Face {
+        let step = face.step();
+        let world = std::array::from_fn(|i| (0..3).map(|k| i32::from(self.0[i][k]) * step[k]).sum());
+        Face::from_step(world).expect("a signed permutation keeps unit steps")
+    }
+
+    /// The module's face that points in this world direction.
+    pub fn to_module(self, world: Face) -> Face {
+        Face::ALL.into_iter().find(|&face| self.to_world(face) == world).expect("a rotation is a bijection")
+    }
+}
+
+/// Where a lattice module is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Placement {
+    /// Its cell.
+    pub cell: Cell,
+    /// How it is turned.
+    pub orientation: Orientation,
+}

@@ -1,0 +1,138 @@
+//! The oracle's answer.
+
+use crate::spatial::{Twist, Vec3, Wrench};
+
+/// An interval that is guaranteed to hold a value, both ends included.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bracket {
+    /// Proved lower bound.
+    pub lower: f64,
+    /// Proved upper bound, `f64::INFINITY` when none was proved.
+    pub upper: f64,
+}
+
+impl Bracket {
+    /// A bracket from its two ends.
+    pub const fn new(lower: f64, upper: f64) -> Self {
+        Self { lower, upper }
+    }
+
+    /// The bracket of a value that is known exactly.
+    pub const fn exact(value: f64) -> Self {
+        Self { lower: value, upper: value }
+    }
+
+    /// The bracket of the larger of two bracketed values.
+    #[must_use]
+    pub fn max(self, other: Self) -> Self {
+        Self { lower: self.lower.max(other.lower), upper: self.upper.max(other.upper) }
+    }
+
+    /// The bracket of the smaller of two bracketed values.
+    #[must_use]
+    pub fn min(self, other: Self) -> Self {
+        Self { lower: self.lower.min(other.lower), upper: self.upper.min(other.upper) }
+    }
+
+    /// Distance between the two ends.
+    pub fn width(&self) -> f64 {
+        if self.lower == self.upper { 0.0 } else { self.upper - self.lower }
+    }
+
+    /// Whether `value` lies in the bracket.
+    pub fn contains(&self, value: f64) -> bool {
+        self.lower <= value && value <= self.upper
+    }
+}
+
+/// What a bracket on the utilisation proves about a structure.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Verdict {
+    /// Every connection can hold: t <= 1 is proved.
+    Stable,
+    /// Some connection must break: t > 1 is proved.
+    InternallyUnstable,
+    /// No connection strength helps: it tips, slides or falls.
+    WholeBodyUnstable,
+    /// The bracket still straddles 1 at the finest setting.
+    Undecided,
+}
+
+/// How tightly a question wants its answer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Question {
+    /// Only whether the utilisation is at most this: the bracket may be wide,
+    /// as long as it lies on one side of the threshold.
+    Decide(f64),
+    /// The utilisation itself, as tightly as the solver can.
+    Value,
+}
+
+/// The part of the answer that concerns one connection.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ConnectionState {
+    /// Wrench on the child at the connection point, in the connection frame.
+    pub wrench: Wrench,
+    /// Strength in N that the connection must provide in the returned state.
+    pub strength: f64,
+    /// `strength` over the connector's rated strength.
+    pub utilisation: f64,
+    /// Whether the connection breaks in the collapse mechanism: without more
+    /// strength here, the utilisation could not fall.
+    pub critical: bool,
+}
+
+/// What was left out of the optimisation because the scene did not need it.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct LeftOut {
+    /// Fixed bodies, which need no balance.
+    pub fixed_bodies: usize,
+    /// Connections whose wrench follows from balance alone.
+    pub closed_form_connections: usize,
+    /// Contacts whose force follows from balance alone.
+    pub closed_form_contacts: usize,
+    /// Blocks that a conic program was solved for.
+    pub solved_blocks: usize,
+    /// Free bodies in the largest such block.
+    pub largest_block_bodies: usize,
+}
+
+/// The oracle's answer for one structure.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Assessment {
+    /// What the bracket proves.
+    pub verdict: Verdict,
+    /// The utilisation t: the smallest common factor on all rated strengths
+    /// with which the structure can stand. Both ends infinite when it is
+    /// whole-body unstable.
+    pub utilisation: Bracket,
+    /// One entry per connection, in the structure's order.
+    pub connections: Vec<ConnectionState>,
+    /// Contact forces in N on each contact's `body`, in W, in the structure's order.
+    pub contacts: Vec<Vec3>,
+    /// Collapse mechanism: a twist per body (of its centre of mass, in W), in the
+    /// structure's order. All zero when nothing limits the structure.
+    pub mechanism: Vec<Twist>,
+    /// What needed no optimisation.
+    pub left_out: LeftOut,
+    /// Why the verdict is undecided; `None` for any other verdict.
+    pub undecided_because: Option<String>,
+}
+
+impl Assessment {
+    /// Bracket on the internal stability margin `1 - t` (dimensionless,
+    /// positive is safe); minus infinity when whole-body unstable.
+    pub fn margin(&self) -> Bracket {
+        Bracket::new(1.0 - self.utilisation.upper, 1.0 - self.utilisation.lower)
+    }
+
+    /// The connection that the verdict hangs on: of the critical connections,
+    /// or of all when none is critical, the one with the largest utilisation.
+    pub fn weakest_connection(&self) -> Option<usize> {
+        let key = |i: &usize| (self.connections[*i].critical, self.connections[*i].utilisation);
+        (0..self.connections.len()).max_by(|a, b| {
+            let ((ca, ua), (cb, ub)) = (key(a), key(b));
+            ca.cmp(&cb).then(ua.total_cmp(&ub)).then(b.cmp(a))
+        })
+    }
+}
