@@ -6,6 +6,7 @@
 
 mod broad_phase;
 mod contact;
+mod environment;
 mod motion;
 mod polygon;
 mod separation;
@@ -14,6 +15,7 @@ mod sweep;
 
 pub use broad_phase::touching_candidates;
 pub use contact::{ContactPatch, contact, ground_contact};
+pub use environment::environment_problems;
 pub use motion::Motion;
 pub use separation::{overlap, penetration};
 pub use solid::Solid;

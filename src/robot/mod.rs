@@ -7,9 +7,12 @@
 
 mod built_in;
 mod catalogue;
+mod catalogue_check;
 mod configuration;
+mod configuration_check;
 mod lattice;
 mod occupancy;
+mod problem;
 
 pub use built_in::BUILT_IN;
 pub use catalogue::{BodyType, Catalogue, LatticeType, ModuleType, Shape};
@@ -18,3 +21,4 @@ pub use configuration::{
 };
 pub use lattice::{Cell, Face, Orientation, Placement, neighbour};
 pub use occupancy::Occupancy;
+pub use problem::{Fault, Part, Problem};
