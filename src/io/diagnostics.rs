@@ -2,14 +2,7 @@
 
 use std::fmt;
 
-/// What kind of problem it is. The number never changes once released.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct Code {
-    /// Number as shown, e.g. `E012`.
-    pub number: &'static str,
-    /// Name as shown, e.g. `unknown-key`.
-    pub name: &'static str,
-}
+use super::codes::Code;
 
 /// One problem of a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -18,21 +11,22 @@ pub struct Diagnostic {
     pub code: Code,
     /// Name of the file.
     pub file: String,
-    /// Path of the value within the file, e.g. `modules[3].rotation_xyzw`; empty for the whole file.
+    /// Path of the value within the file, e.g. `modules[3].rotation_xyzw`;
+    /// empty for the whole file. A missing key has the path that it should have.
     pub path: String,
     /// Line, from 1.
     pub line: usize,
-    /// Column in characters, from 1.
+    /// Column in characters, from 1. A missing key is placed at the opening brace.
     pub column: usize,
     /// What was expected and what was found.
     pub message: String,
     /// What to do about it.
     pub hint: Option<String>,
-    /// The source line with the place underlined, clipped to a readable width.
+    /// The source line, clipped to a readable width, and the place underlined.
     pub excerpt: String,
 }
 
-/// All problems of a file, at least one, in the order of the file.
+/// All problems of one or several files, at least one.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostics {
     items: Vec<Diagnostic>,
@@ -40,25 +34,46 @@ pub struct Diagnostics {
 }
 
 impl Diagnostics {
-    /// The problems, in the order of the file; long lists are cut.
+    pub(super) fn new(items: Vec<Diagnostic>, omitted: usize) -> Self {
+        Self { items, omitted }
+    }
+
+    /// The problems, file by file, each file's in the order of its text.
     pub fn items(&self) -> &[Diagnostic] {
         &self.items
     }
 
-    /// How many further problems were cut from the list.
+    /// How many further problems were left out because the list grew too long.
     pub fn omitted(&self) -> usize {
         self.omitted
     }
+}
 
-    /// The problems as a JSON document, for programs.
-    pub fn to_json(&self) -> String {
-        todo!()
+impl fmt::Display for Diagnostic {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { code, file, line, column, message, .. } = self;
+        writeln!(f, "{file}:{line}:{column}: error[{}]: {message}", code.number)?;
+        for line in self.excerpt.lines() {
+            writeln!(f, "  {line}")?;
+        }
+        match &self.hint {
+            Some(hint) => writeln!(f, "  hint: {hint}"),
+            None => Ok(()),
+        }
     }
 }
 
 impl fmt::Display for Diagnostics {
-    fn fmt(&self, _f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        todo!()
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for item in &self.items {
+            writeln!(f, "{item}")?;
+        }
+        let count = self.items.len() + self.omitted;
+        match (count, self.omitted) {
+            (1, _) => writeln!(f, "1 problem"),
+            (_, 0) => writeln!(f, "{count} problems"),
+            (_, omitted) => writeln!(f, "{count} problems, the last {omitted} of them not shown"),
+        }
     }
 }
 
