@@ -48,6 +48,11 @@ impl<'a> Checker<'a> {
     }
 
     fn value<'d>(&mut self, schema: &'a Schema, node: &'d Node, place: &Place<'d>) {
+        if self.findings.is_full() {
+            self.form.broken = true; // more would not be shown
+            self.findings.truncate();
+            return;
+        }
         let schema = self.resolve(schema);
         if let Some(alternatives) = alternatives(schema) {
             return self.one_of(alternatives, schema, node, place);
@@ -138,6 +143,10 @@ impl<'a> Checker<'a> {
         let text = place.text().unwrap_or_default();
         if is_integer(schema) && !in_integer_format(schema, text) {
             self.form.broken = true;
+            if text.trim_start_matches('-').bytes().all(|byte| byte.is_ascii_digit()) {
+                let message = format!("the whole number {} is out of range", clipped(text));
+                return self.findings.add(place, codes::OUT_OF_RANGE, message, None);
+            }
             let message = format!("expected a whole number, found {}", clipped(text));
             let short = number.fract() == 0.0 && number.abs() < 1e9;
             return self.findings.add(place, codes::WRONG_TYPE, message, short.then(|| format!("write {number:.0}")));
@@ -161,11 +170,17 @@ impl<'a> Checker<'a> {
         if least.is_some_and(|least| items.len() < least) || most.is_some_and(|most| items.len() > most) {
             // A fixed length is a type of the decoder's; an empty list is not.
             self.form.broken |= most.is_some();
-            let message = format!("expected {}, found {}", self.expected(schema), items.len());
+            let message = match items.len() {
+                0 => format!("expected {}, found none", self.expected(schema)),
+                count => format!("expected {}, found {count}", self.expected(schema)),
+            };
             self.findings.add(place, codes::WRONG_LENGTH, message, None);
         }
         if let Some(item_schema) = schema.get("items") {
             for (index, item) in items.iter().enumerate() {
+                if self.findings.is_full() {
+                    break;
+                }
                 self.value(item_schema, item, &place.item(index, item));
             }
         }
@@ -179,17 +194,17 @@ impl<'a> Checker<'a> {
         let free: Vec<_> = all.filter(|key| node.get(key).is_none()).collect();
         let mut meant = Vec::new();
         for member in members {
+            if self.findings.is_full() {
+                break;
+            }
             if let Some(property) = known.and_then(|known| known.get(&*member.key)).or(others) {
                 self.value(property, &member.node, &place.member(member));
                 continue;
             }
             self.form.unknown_keys.insert(member.key_span.start);
-            if self.findings.is_full() {
-                self.findings.omit();
-                continue;
-            }
             meant.extend(suggest::closest(&member.key, free.iter().copied()));
             let hint = suggest::hint(&member.key, "known keys not yet used", free.iter().copied());
+            let hint = hint.filter(|_| !free.is_empty());
             let message = format!("unknown key `{}`", clipped(&member.key));
             self.findings.add_at(place, member.key_span, codes::UNKNOWN_KEY, message, hint);
         }

@@ -30,12 +30,12 @@ pub struct Diagnostic {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostics {
     items: Vec<Diagnostic>,
-    omitted: usize,
+    truncated: bool,
 }
 
 impl Diagnostics {
-    pub(super) fn new(items: Vec<Diagnostic>, omitted: usize) -> Self {
-        Self { items, omitted }
+    pub(super) fn new(items: Vec<Diagnostic>, truncated: bool) -> Self {
+        Self { items, truncated }
     }
 
     /// The problems, file by file, each file's in the order of its text.
@@ -43,9 +43,9 @@ impl Diagnostics {
         &self.items
     }
 
-    /// How many further problems were left out because the list grew too long.
-    pub fn omitted(&self) -> usize {
-        self.omitted
+    /// Whether there are further problems, left out because the list grew too long.
+    pub fn is_truncated(&self) -> bool {
+        self.truncated
     }
 }
 
@@ -68,11 +68,10 @@ impl fmt::Display for Diagnostics {
         for item in &self.items {
             writeln!(f, "{item}")?;
         }
-        let count = self.items.len() + self.omitted;
-        match (count, self.omitted) {
-            (1, _) => writeln!(f, "1 problem"),
-            (_, 0) => writeln!(f, "{count} problems"),
-            (_, omitted) => writeln!(f, "{count} problems, the last {omitted} of them not shown"),
+        match (self.items.len(), self.truncated) {
+            (1, false) => writeln!(f, "1 problem"),
+            (count, false) => writeln!(f, "{count} problems"),
+            (count, true) => writeln!(f, "more than {count} problems"),
         }
     }
 }

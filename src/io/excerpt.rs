@@ -36,7 +36,7 @@ pub(super) fn excerpt(text: &str, span: Span) -> Excerpt {
     let indent = shown.len() + lead - skipped;
     let room = WINDOW - (lead - skipped);
     let source = text[line_start..start].chars().skip(skipped).chain(tail.chars().take(room));
-    shown.extend(source.map(|c| if c.is_control() { ' ' } else { c }));
+    shown.extend(source.map(|c| if c.is_control() || c == '\u{feff}' { ' ' } else { c }));
     if tail.chars().nth(room).is_some() {
         shown.push_str("...");
     }

@@ -6,7 +6,7 @@ use super::document::SourceFile;
 use super::excerpt::excerpt;
 use super::json::{self, Member, Node, Span};
 
-/// Most problems that are kept; the rest is counted.
+/// Most problems that are kept; what is found beyond them is not shown.
 const MOST: usize = 50;
 
 /// Largest file that is read, in bytes. A million modules fit.
@@ -18,7 +18,7 @@ pub(super) struct Findings {
     // Each with its sort key: the file in the order of opening, then the place in it.
     items: Vec<((usize, u32), Diagnostic)>,
     files: Vec<String>,
-    omitted: usize,
+    truncated: bool,
 }
 
 /// A parsed text.
@@ -102,7 +102,7 @@ impl Findings {
         hint: Option<String>,
     ) {
         if self.items.len() == MOST {
-            self.omitted += 1;
+            self.truncated = true;
             return;
         }
         let shown = excerpt(text, span);
@@ -112,19 +112,19 @@ impl Findings {
         self.items.push(((rank, span.start), item));
     }
 
-    /// Whether further problems are only counted.
+    /// Whether further problems would not be kept.
     pub(super) fn is_full(&self) -> bool {
         self.items.len() == MOST
     }
 
     /// How many problems were found so far.
     pub(super) fn count(&self) -> usize {
-        self.items.len() + self.omitted
+        self.items.len() + usize::from(self.truncated)
     }
 
-    /// Counts a problem that is not kept.
-    pub(super) fn omit(&mut self) {
-        self.omitted += 1;
+    /// Notes that there may be more problems than those that are kept.
+    pub(super) fn truncate(&mut self) {
+        self.truncated = true;
     }
 
     /// The value read, unless something was found.
@@ -136,7 +136,7 @@ impl Findings {
             Some(value) if self.items.is_empty() => Ok(value),
             _ => {
                 self.items.sort_by_key(|(place, _)| *place);
-                Err(Diagnostics::new(self.items.into_iter().map(|(_, item)| item).collect(), self.omitted))
+                Err(Diagnostics::new(self.items.into_iter().map(|(_, item)| item).collect(), self.truncated))
             }
         }
     }

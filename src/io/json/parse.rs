@@ -192,7 +192,11 @@ impl Parser<'_> {
                 let span = Span::new(item_end, item_end + 1);
                 Err(Fault::syntax(span, message, "a comma is missing after the previous value"))
             }
-            Some(_) => Err(self.unexpected(&format!("`,` or `{}`", close as char))),
+            Some(_) => {
+                let mut fault = self.unexpected(&format!("`,` or `{}`", close as char));
+                fault.hint = Some("is a comma, or a closing double quote, missing before it?".to_string());
+                Err(fault)
+            }
         }
     }
 
@@ -261,7 +265,7 @@ impl Parser<'_> {
             Some(first) if first.is_ascii_alphabetic() => {
                 format!("`{}`", string::clipped(&self.text[self.word_span().range()]))
             }
-            Some(first) => format!("`{}`", first.escape_debug()),
+            Some(first) => format!("`{}`", string::clipped(first.encode_utf8(&mut [0; 4]))),
         }
     }
 

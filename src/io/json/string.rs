@@ -19,7 +19,11 @@ pub(super) fn scan(text: &str, start: usize) -> Result<(Box<str>, Span), Fault> 
                 value.push(character);
                 at += length;
             }
-            None | Some(b'\n' | b'\r') => {
+            None => {
+                let hint = "is the file truncated, or a closing double quote missing?";
+                return Err(Fault::syntax(Span::new(start, at), "the file ends inside a string", hint));
+            }
+            Some(b'\n' | b'\r') => {
                 let hint = "a closing double quote is missing; a line break in a string is written \\n";
                 return Err(Fault::syntax(Span::new(start, at), "the string is not closed", hint));
             }

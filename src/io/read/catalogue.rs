@@ -75,10 +75,12 @@ fn convert(wire: &wire::Catalogue, place: &Place<'_>, source: &str, findings: &m
         connectors: connectors(&wire.connectors),
         module_types: module_types.into_iter().flatten().collect(),
     };
-    if complete {
-        faults::of_catalogue(&catalogue.problems(), place, findings);
+    if !complete {
+        return None;
     }
-    complete.then_some(catalogue)
+    let problems = catalogue.problems();
+    faults::of_catalogue(&problems, place, findings);
+    problems.is_empty().then_some(catalogue)
 }
 
 struct Reader<'a> {

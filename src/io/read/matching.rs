@@ -71,8 +71,10 @@ impl Comparison<'_> {
             match ids.get(module.id.as_str()) {
                 None => {
                     let message = format!("the start's module `{id}` is not in the goal; {why}");
-                    let hint = suggest::closest(&module.id, ids_of(self.goal))
-                        .map(|near| format!("is `{near}` the same module?"));
+                    let hint = match suggest::closest(&module.id, ids_of(self.goal)) {
+                        Some(near) => format!("is `{near}` the same module?"),
+                        None => "list it under the id that it has in the start".to_string(),
+                    };
                     findings.add(&place, codes::UNKNOWN_NAME, message, hint);
                 }
                 Some(other) if other.module_type != module.module_type => {

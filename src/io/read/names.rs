@@ -10,7 +10,7 @@ use super::super::{codes, suggest};
 #[derive(Debug)]
 pub(super) struct Names<'a> {
     what: &'static str,
-    list: Vec<&'a str>,
+    distinct: Vec<&'a str>,
     indices: HashMap<&'a str, usize>,
 }
 
@@ -24,15 +24,19 @@ impl<'a> Names<'a> {
         findings: &mut Findings,
     ) -> Self {
         let mut indices = HashMap::with_capacity(list.len());
-        for (index, name) in list.iter().enumerate() {
-            let first = *indices.entry(*name).or_insert(index);
+        let mut distinct = Vec::with_capacity(list.len());
+        for (index, name) in list.into_iter().enumerate() {
+            let first = *indices.entry(name).or_insert(index);
+            if first == index {
+                distinct.push(name);
+            }
             if first != index {
                 let message =
                     format!("the id `{}` is taken already, by number {} of the {what}", clipped(name), first + 1);
                 findings.add(&place_of(index), codes::DUPLICATE_ID, message, "ids are unique".to_string());
             }
         }
-        Self { what, list, indices }
+        Self { what, distinct, indices }
     }
 
     /// The index of `name`, which stands at `place`.
@@ -40,10 +44,10 @@ impl<'a> Names<'a> {
         let found = self.indices.get(name).copied();
         if found.is_none() {
             if findings.is_full() {
-                findings.omit();
+                findings.truncate();
                 return None;
             }
-            let hint = suggest::hint(name, self.what, self.list.iter().copied());
+            let hint = suggest::hint(name, self.what, self.distinct.iter().copied());
             findings.add(
                 place,
                 codes::UNKNOWN_NAME,

@@ -108,7 +108,7 @@ pub(crate) struct Module {
     #[serde(rename = "type")]
     pub(crate) module_type: String,
     /// Cell of a lattice module: it fills [x, x+1] x [y, y+1] x [z, z+1] times the pitch.
-    #[schemars(inner(inner(range(min = -1_000_000, max = 1_000_000))))]
+    #[schemars(inner(range(min = -1_000_000, max = 1_000_000)))]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) cell: Option<[i32; 3]>,
     /// Position of its first body, for modules outside the lattice.

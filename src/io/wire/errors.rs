@@ -19,8 +19,8 @@ pub(crate) struct Errors {
     pub(crate) format: ErrorsFormat,
     /// The problems, file by file, in the order of the text.
     pub(crate) errors: Vec<FileError>,
-    /// How many further ones were left out of a long list.
-    pub(crate) omitted: u64,
+    /// Whether there are further ones, left out of a long list.
+    pub(crate) truncated: bool,
 }
 
 /// One problem.

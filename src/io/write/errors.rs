@@ -7,7 +7,7 @@ pub(super) fn wire(diagnostics: &Diagnostics) -> wire::Errors {
     wire::Errors {
         format: wire::ErrorsFormat::V1,
         errors: diagnostics.items().iter().map(error).collect(),
-        omitted: diagnostics.omitted() as u64,
+        truncated: diagnostics.is_truncated(),
     }
 }
 
