@@ -12,14 +12,18 @@ use crate::space::Width;
 /// is not found has a first transition ranked at most `k`. Either that is not
 /// certified, and its width is at most `k`; or it is, and its width is at most
 /// its `upper`. So no path is wider than `k` or the largest `upper` of
-/// those certified with `lower <= k`, whichever is more.
+/// those certified with `lower <= k`, whichever is more. This is about all paths
+/// whenever it is asked, so the least of the answers holds.
 pub(crate) struct Brackets {
+    /// Least answer so far.
+    proved: f64,
     by_upper: BinaryHeap<(Bottleneck, Bottleneck)>,
 }
 
 impl Brackets {
-    pub fn new() -> Self {
-        Brackets { by_upper: BinaryHeap::new() }
+    /// `cap`: no path is wider.
+    pub fn new(cap: f64) -> Self {
+        Brackets { proved: cap, by_upper: BinaryHeap::new() }
     }
 
     pub fn insert(&mut self, width: Width) {
@@ -34,7 +38,9 @@ impl Brackets {
         while self.by_upper.peek().is_some_and(|(_, lower)| lower.width() > k) {
             self.by_upper.pop();
         }
-        self.by_upper.peek().map_or(k, |(upper, _)| k.max(upper.width()))
+        let bound = self.by_upper.peek().map_or(k, |(upper, _)| k.max(upper.width()));
+        self.proved = self.proved.min(bound);
+        self.proved
     }
 
     /// Approximate memory, in bytes.

@@ -62,17 +62,9 @@ impl<'a> Monitor<'a> {
         self.progress = Progress { pass, statistics, best_width: None, width_at_most, best_cost: None, cost_at_least };
     }
 
-    /// Books the memory in use and counts one decision of the search. Reports
-    /// at every so many of them; says which limit is exceeded.
-    pub fn tick(&mut self, generated: u64, certified: u64, states: usize, bytes: usize) -> Option<Limit> {
-        let statistics = &mut self.progress.statistics;
-        *statistics = Statistics {
-            expanded: statistics.expanded,
-            generated,
-            certified,
-            states,
-            bytes: statistics.bytes.max(bytes),
-        };
+    /// Counts one decision of the search. Reports at every so many of them; says
+    /// which limit is exceeded.
+    pub fn tick(&mut self) -> Option<Limit> {
         self.decisions += 1;
         if self.decisions.is_multiple_of(self.report_every) {
             self.report();

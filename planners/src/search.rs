@@ -74,10 +74,19 @@ impl<'a, S: Space> Search<'a, S> {
         if width.is_finite() { width - self.tolerance * width.abs().max(1.0) } else { width }
     }
 
-    /// Books the memory in use; says which limit is exceeded, if one is.
+    /// Books what has been done, with the memory of queues and labels.
+    pub(crate) fn book(&mut self, open_bytes: usize) {
+        let statistics = &mut self.monitor.progress.statistics;
+        statistics.generated = self.graph.generated;
+        statistics.certified = self.graph.certified;
+        statistics.states = self.graph.states();
+        statistics.bytes = statistics.bytes.max(self.graph.bytes() + open_bytes);
+    }
+
+    /// Books one more decision, and reports if it is time; says which limit is exceeded.
     pub(crate) fn tick(&mut self, open_bytes: usize) -> Option<Limit> {
-        let graph = &self.graph;
-        self.monitor.tick(graph.generated, graph.certified, graph.states(), graph.bytes() + open_bytes)
+        self.book(open_bytes);
+        self.monitor.tick()
     }
 
     /// Starts the books of a new question.

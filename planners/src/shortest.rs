@@ -87,8 +87,14 @@ impl<S: Space> Search<'_, S> {
         self.conclude(best, run.limit, floor, Bounds { width_at_most, cost_at_least: run.cost_at_least })
     }
 
-    /// A*. Finding nothing without a limit proves that there is nothing.
+    /// The search; finding nothing without a limit is a proof that there is nothing.
     pub(crate) fn run_shortest(&mut self, task: &Task<'_>) -> ShortestRun {
+        let run = self.a_star(task);
+        self.book(self.tree.bytes() + task.held_bytes);
+        run
+    }
+
+    fn a_star(&mut self, task: &Task<'_>) -> ShortestRun {
         self.tree.clear();
         self.tree.settle(task.from, Additive(task.spent), None);
         if self.graph.is_goal(task.from) {

@@ -61,15 +61,11 @@ impl<S: Space> Search<'_, S> {
     /// The search; finding nothing without a limit is a proof of impossibility.
     pub(crate) fn run_widest(&mut self, floor: f64) -> WidestRun {
         self.monitor.progress.pass = Pass::Widest;
-        let mut engine = Widest {
-            floor,
-            tree: Tree::new(),
-            open: Queue::new(),
-            brackets: Brackets::new(),
-            best: None,
-            cap: self.graph.cap(),
-        };
+        let cap = self.graph.cap();
+        let mut engine =
+            Widest { floor, tree: Tree::new(), open: Queue::new(), brackets: Brackets::new(cap), best: None, cap };
         let run = engine.run(self);
+        self.book(engine.bytes());
         self.monitor.report();
         run
     }
@@ -105,7 +101,7 @@ impl Widest {
                 continue;
             }
             let (mut value, near) = head.priority;
-            search.monitor.progress.width_at_most = self.width_at_most(value.width());
+            search.monitor.progress.width_at_most = self.brackets.width_at_most(value.width());
             if let Some(limit) = search.tick(self.bytes()) {
                 return self.end(search, value.width(), Some(limit));
             }
@@ -155,7 +151,7 @@ impl Widest {
 
     /// What is proved when the best value still open is `k`.
     fn end<S: Space>(&mut self, search: &mut Search<'_, S>, k: f64, limit: Option<Limit>) -> WidestRun {
-        let width_at_most = self.width_at_most(k);
+        let width_at_most = self.brackets.width_at_most(k);
         search.monitor.progress.width_at_most = width_at_most;
         let proved = match self.best {
             Some((best, _)) => best.width() >= search.tie(width_at_most),
@@ -168,10 +164,6 @@ impl Widest {
         });
         let limit = if proved { None } else { limit.or(Some(Limit::Precision)) };
         WidestRun { best, limit, width_at_most }
-    }
-
-    fn width_at_most(&mut self, k: f64) -> f64 {
-        self.brackets.width_at_most(k).min(self.cap)
     }
 
     fn value(&self, closed: StateId) -> Bottleneck {
