@@ -117,9 +117,7 @@ impl Widest {
                 }
                 head.priority = (value, near);
                 head.item.certified = true;
-                // A goal need only be as wide as the rest, whatever else breaks ties.
-                let next = self.open.peek();
-                if next.is_some_and(|next| if is_goal { next.priority.0 > value } else { *next > head }) {
+                if self.open.peek().is_some_and(|next| *next > head) {
                     self.open.reinsert(head);
                     continue;
                 }
