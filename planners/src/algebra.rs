@@ -9,7 +9,7 @@
 //! - *monotonicity*: `a.then(c) <= a`: going on never improves a path.
 //!
 //! `Lexicographic<Additive, Bottleneck>` (fewest moves, then the widest) is
-//! lawful. `Lexicographic<Bottleneck, Additive>` (the widest, then fewest moves)
+//! lawful as long as costs do not saturate. `Lexicographic<Bottleneck, Additive>` (the widest, then fewest moves)
 //! is **not** isotone: `(5, 10) > (4, 1)`, yet after a transition `(3, 1)`
 //! they are `(3, 11) < (3, 2)`. A search with one label would have thrown the
 //! winner away, hence the two passes of [`Search::margin`](crate::Search::margin).

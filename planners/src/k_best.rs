@@ -45,8 +45,8 @@ impl<S: Space> Search<'_, S> {
     /// Management Science 17(11), 1971, in E. L. Lawler's form (Management
     /// Science 18(7), 1972), which splits the paths left into cells that do not
     /// overlap. Each cell is searched by the lazy A* of [`Search::shortest`].
-    /// Paths that `same_plan` drops are gone through one by one, and
-    /// there may be very many of them: give a budget.
+    /// Paths that `same_plan` drops are gone through one by one, and `n`
+    /// independent actions have `n!` orders: give a budget.
     ///
     /// # Guarantees
     ///
