@@ -42,11 +42,6 @@ impl Problem<'_> {
             let allowed = BALANCE * program.scales.force[i] + ROUNDING * through[i];
             let holds = lacking.force.norm() <= allowed && lacking.torque.norm() <= allowed * program.scales.lever[i];
             if !holds {
-                eprintln!(
-                    "   resid body {i} f {:e} m {:e} allowed {allowed:e}",
-                    lacking.force.norm(),
-                    lacking.torque.norm()
-                );
                 return None;
             }
             charge += twists.map_or(0.0, |twists| twists[i].power(lacking).abs());
@@ -60,7 +55,6 @@ impl Problem<'_> {
                     let held = wrench.force.z >= -slip
                         && wrench.force.xy().norm() <= friction * wrench.force.z.max(0.0) + slip;
                     if !held {
-                        eprintln!("   contact {l} {:?} slip {slip:e}", wrench.force);
                         return None;
                     }
                     demands.push(0.0);
@@ -198,14 +192,19 @@ fn dissipated(connector: &Connector, relative: &Twist, error: f64) -> Option<f64
             ];
             let mut total = 0.0;
             for (velocity, opening_limit, closing_limit) in components {
-                let admissible = (opening_limit.is_finite() || velocity <= -error)
-                    && (closing_limit.is_finite() || velocity >= error);
+                let admissible = match (opening_limit.is_finite(), closing_limit.is_finite()) {
+                    (true, true) => true,
+                    (true, false) => velocity >= error,
+                    (false, true) => velocity <= -error,
+                    (false, false) => velocity.abs() <= error * (DATA / ROUNDING),
+                };
                 if !admissible {
                     return None;
                 }
                 let limit = if velocity >= 0.0 { opening_limit } else { closing_limit };
-                let uncertain = error * opening_limit.min(closing_limit);
-                total += limit * velocity.abs() + if uncertain.is_finite() { uncertain } else { 0.0 };
+                if limit.is_finite() {
+                    total += limit * (velocity.abs() + error);
+                }
             }
             Some(total)
         }

@@ -9,6 +9,7 @@ use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSettingsBuilder, DefaultSolver, IPSolver, SupportedConeT};
 
 use super::program::{Cone, Program};
+use super::respect::respect_unlimited;
 
 /// One way of asking the solver.
 #[derive(Clone, Copy, Debug)]
@@ -62,7 +63,9 @@ pub(super) fn solve(program: &Program, attempt: &Attempt) -> Option<Iterate> {
     for (group, &row) in program.groups.iter().zip(&layout.first_row) {
         variables[group.first..group.first + group.len].copy_from_slice(&z[row..row + group.len]);
     }
-    Some(Iterate { v: x.clone(), z: variables, t: z[layout.preload_row] })
+    let mut v = x.clone();
+    respect_unlimited(program, &mut v);
+    Some(Iterate { v, z: variables, t: z[layout.preload_row] })
 }
 
 fn settings(attempt: &Attempt) -> Option<DefaultSettings<f64>> {

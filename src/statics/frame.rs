@@ -50,12 +50,6 @@ impl LinkFrame {
         Wrench::new(self.axes * local.force, self.axes * local.torque).moved(&(self.origin - com))
     }
 
-    /// A wrench in W about `com` as one in the frame about its origin.
-    pub(super) fn from_body(&self, wrench: &Wrench, com: &Vec3) -> Wrench {
-        let here = wrench.moved(&(com - self.origin));
-        Wrench::new(self.axes.tr_mul(&here.force), self.axes.tr_mul(&here.torque))
-    }
-
     /// Twist of the plus side relative to the minus side at the origin, in the
     /// frame. `twist` gives a body's twist at its centre of mass in W.
     pub(super) fn relative_twist(&self, structure: &Structure, twist: impl Fn(usize) -> Twist) -> Twist {

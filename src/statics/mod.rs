@@ -31,6 +31,7 @@ mod loads;
 mod part;
 mod patch;
 mod program;
+mod respect;
 mod scales;
 mod second_order;
 mod solve_block;

@@ -55,7 +55,6 @@ pub(super) fn assess_block(structure: &Structure, block: &Block, loads: &[BodyLo
         if let Some(iterate) = solve(&program, attempt) {
             best.improve(&problem, &iterate, question);
         }
-        eprintln!("  attempt {count}: [{:.12},{:.12}]", best.lower, best.upper);
         if best.answers(question) {
             break;
         }
