@@ -57,7 +57,8 @@ pub fn contact(a: &Solid, b: &Solid, tolerance: f64) -> Option<ContactPatch> {
 pub fn ground_contact(solid: &Solid, height: f64, tolerance: f64) -> Option<ContactPatch> {
     let vertices = solid.vertices();
     let lowest = vertices.iter().map(|p| p.z).fold(f64::INFINITY, f64::min);
-    if !((lowest - height).abs() <= tolerance) {
+    let touches = (lowest - height).abs() <= tolerance;
+    if !touches {
         return None;
     }
     let near = vertices.into_iter().filter(|p| p.z <= height + tolerance);

@@ -12,6 +12,8 @@ mod polygon;
 mod separation;
 mod solid;
 mod sweep;
+#[cfg(test)]
+mod tests;
 
 pub use broad_phase::touching_candidates;
 pub use contact::{ContactPatch, contact, ground_contact};

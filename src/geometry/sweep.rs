@@ -25,7 +25,7 @@ pub struct Surroundings {
 }
 
 /// Smallest phase in 0 to 1 at which `solid`, displaced by `motion` from its own pose, hits
-/// something, or `None` when the way is free.
+/// something, or `None` when the way is free. All data must be finite.
 ///
 /// # Guarantees
 /// With `s` = [`SKIN`] times the half of the solid's largest extent:
@@ -58,7 +58,7 @@ pub fn first_collision(solid: &Solid, motion: &Motion, surroundings: &Surroundin
             first = first.min(phase);
         }
     }
-    (!(first > 1.0)).then_some(first)
+    (first <= 1.0).then_some(first)
 }
 
 /// First phase up to `until` at which the shrunk solid arrives at an obstacle.
