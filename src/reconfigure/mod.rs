@@ -1,4 +1,6 @@
 //! Actions, transient states, and the search space of a robot.
 
 pub mod assembly;
+#[cfg(test)]
+mod assembly_tests;
 mod surface;
