@@ -15,7 +15,7 @@ mod sweep;
 #[cfg(test)]
 mod tests;
 
-pub use broad_phase::touching_candidates;
+pub use broad_phase::BroadPhase;
 pub use contact::{ContactPatch, contact, ground_contact};
 pub use environment::environment_problems;
 pub use motion::Motion;

@@ -147,13 +147,46 @@ fn the_ground_carries_what_reaches_it() {
 }
 
 #[test]
-fn the_broad_phase_finds_every_touching_pair_of_a_block() {
+fn the_broad_phase_finds_what_touches_in_a_block() {
     let cells = |i: usize| cube((i % 4) as f64, (i / 4 % 4) as f64, (i / 16) as f64);
     let solids: Vec<_> = (0..64).map(cells).collect();
-    let pairs = touching_candidates(&solids, TOUCH);
-    let near = |[i, j]: [usize; 2]| (solids[i].centre() - solids[j].centre()).amax() <= 1.0;
-    let expected: Vec<_> = (0..64).flat_map(|i| (i + 1..64).map(move |j| [i, j])).filter(|&p| near(p)).collect();
-    assert_eq!(pairs, expected);
+    let broad_phase = BroadPhase::new(solids.clone());
+    for solid in &solids {
+        let found: Vec<_> = broad_phase.near(solid, TOUCH).into_iter().map(|(i, _)| i).collect();
+        let near = |i: &usize| (solids[*i].centre() - solid.centre()).amax() <= 1.0;
+        assert_eq!(found, (0..64).filter(near).collect::<Vec<_>>());
+    }
+    assert_eq!(BroadPhase::new(Vec::new()).near(&solids[0], TOUCH), []);
+}
+
+#[test]
+fn modules_in_their_environment_are_found() {
+    let mut configuration = crate::robot::Configuration {
+        catalogue: std::sync::Arc::new(crate::robot::Catalogue::cube()),
+        gravity: Vec3::zeros(),
+        environment: Default::default(),
+        modules: Vec::new(),
+        connections: Vec::new(),
+        loads: Vec::new(),
+        require: Default::default(),
+    };
+    for (i, cell) in [[0, 0, 0], [1, 0, 0], [0, 0, -1]].into_iter().enumerate() {
+        let placement = crate::robot::Placement::new(cell);
+        configuration.modules.push(crate::robot::Module { id: i.to_string(), module_type: 0, placement, fixed: false });
+    }
+    configuration.environment.ground = Some(crate::robot::Ground { height: 0.0, friction: 0.5 });
+    // A block beyond module 1 that touches it, and one that reaches into it.
+    for x in [0.11, 0.105] {
+        let shape = Shape::Cuboid { half_extents: Vec3::repeat(0.01) };
+        let pose = Pose::translation(x, 0.025, 0.025);
+        configuration.environment.obstacles.push(crate::robot::Obstacle { shape, pose, friction: 0.5 });
+    }
+    let found: Vec<_> = environment_problems(&configuration).into_iter().map(|p| (p.part, p.fault)).collect();
+    use crate::robot::{Fault, Part};
+    assert_eq!(
+        found,
+        [(Part::Module(1), Fault::InsideObstacle { obstacle: 1 }), (Part::Module(2), Fault::BelowGround)]
+    );
 }
 
 /// Cells, in the plane of the motion, that a cube needs free to pivot: the cube is at

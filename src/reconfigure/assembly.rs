@@ -5,7 +5,7 @@
 
 use nalgebra::{Matrix3, Rotation3, Translation3};
 
-use crate::geometry::{ContactPatch, Solid, TOUCH, contact, ground_contact};
+use crate::geometry::{BroadPhase, ContactPatch, Solid, TOUCH, contact, ground_contact};
 use crate::robot::{Configuration, Face, FaceConnection, Occupancy, Placement};
 use crate::spatial::{Pose, Rotation, Vec3};
 use crate::statics::{Anchor, Body, Connection, Connector, Contact, Load, Structure};
@@ -108,7 +108,7 @@ pub struct Assembler<'a> {
     connectors: Vec<Connector>,
     /// How two module types meet, by first times the number of types plus second.
     surfaces: Vec<Surface>,
-    obstacles: Vec<Solid>,
+    obstacles: BroadPhase,
 }
 
 /// The structure of a configuration as it stands.
@@ -134,7 +134,7 @@ impl<'a> Assembler<'a> {
             pitch,
             connectors: catalogue.connectors.iter().map(|c| full_face(c, pitch)).collect(),
             surfaces,
-            obstacles: configuration.environment.obstacles.iter().map(Solid::from).collect(),
+            obstacles: BroadPhase::new(configuration.environment.obstacles.iter().map(Solid::from).collect()),
         }
     }
 
@@ -267,7 +267,7 @@ impl<'a> Assembler<'a> {
             {
                 add_contacts(assembly, module, Touched::Ground, ground.friction, patch);
             }
-            for (index, obstacle) in self.obstacles.iter().enumerate() {
+            for (index, obstacle) in self.obstacles.near(&solid, tolerance) {
                 if let Some(patch) = contact(&solid, obstacle, tolerance) {
                     let friction = self.configuration.environment.obstacles[index].friction;
                     add_contacts(assembly, module, Touched::Obstacle(index), friction, patch);

@@ -132,7 +132,8 @@ fn problems_after(change: impl FnOnce(&mut Configuration)) -> Vec<Problem> {
 #[test]
 fn every_fault_of_a_configuration_is_found_where_it_is() {
     let one = |part, field, fault| vec![Problem { part, field, fault }];
-    let cases: [(Box<dyn FnOnce(&mut Configuration)>, Vec<Problem>); 20] = [
+    type Case = (Box<dyn FnOnce(&mut Configuration)>, Vec<Problem>);
+    let cases: [Case; 20] = [
         (Box::new(|c| c.gravity.x = f64::NAN), one(Part::Configuration, "gravity", Fault::NotFinite)),
         (
             Box::new(|c| c.environment.module_friction = -0.1),
