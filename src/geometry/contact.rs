@@ -5,10 +5,7 @@ use crate::spatial::Vec3;
 use super::polygon::{Point2, clip, convex_hull, crossing};
 use super::separation::separations;
 use super::solid::Solid;
-
-/// Sine of the angle up to which two contact normals count as one. Solids
-/// of size h whose faces are less parallel than TOUCH touch in an edge instead.
-const SAME_NORMAL: f64 = 1e-4;
+use super::tolerances::SAME_NORMAL;
 
 /// Where two solids touch: the corners of the touching area.
 #[derive(Clone, Debug, PartialEq)]

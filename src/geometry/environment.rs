@@ -2,10 +2,10 @@
 
 use crate::robot::{Configuration, Fault, Part, Problem};
 
-use super::SKIN;
 use super::broad_phase::BroadPhase;
 use super::separation::overlap;
 use super::solid::Solid;
+use super::tolerances::SKIN;
 
 /// Modules below the ground or inside obstacles, by module. Completes
 /// [`Configuration::problems`], of which there must be none.

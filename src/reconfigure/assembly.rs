@@ -138,11 +138,17 @@ impl<'a> Assembler<'a> {
         }
     }
 
-    /// The structure of a state. Engagements that hold nothing are left out:
-    /// faces without overlap, or whose connectors do not fit; hinges of modules
-    /// that have none. A connection of the configuration's kind is at the centre of
-    /// the overlap, with z from parent to child and x along the world axis that
-    /// follows the normal's in the order x, y, z, x.
+    /// The structure of a state: a body for each module, a connection for each
+    /// engagement, and contacts wherever else something touches.
+    ///
+    /// The frame of a face's connection is at the centre of the overlap, z from
+    /// parent to child, x along the world axis after the normal's (in the order x,
+    /// y, z, x), whatever the modules' orientations. A partly overlapped face holds with its
+    /// share of the connector's strength and limits. Engagements that hold nothing are left out:
+    /// faces without overlap or whose connectors do not fit, hinges of modules that have none.
+    ///
+    /// Two fixed modules carry no contact between them, nor does a fixed module
+    /// with its environment.
     pub fn assemble(&self, state: &Transient) -> Assembly {
         let mut assembly = Assembly {
             structure: Structure {
