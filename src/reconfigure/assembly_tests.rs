@@ -26,7 +26,7 @@ fn catalogue() -> Arc<Catalogue> {
     Arc::new(catalogue)
 }
 
-fn robot(module_type: usize, cells: &[Cell]) -> Configuration {
+pub(super) fn robot(module_type: usize, cells: &[Cell]) -> Configuration {
     let module = |(i, cell): (usize, &Cell)| Module {
         id: i.to_string(),
         module_type,
@@ -44,7 +44,7 @@ fn robot(module_type: usize, cells: &[Cell]) -> Configuration {
     }
 }
 
-fn connected(module_type: usize, cells: &[Cell]) -> Configuration {
+pub(super) fn connected(module_type: usize, cells: &[Cell]) -> Configuration {
     let mut configuration = robot(module_type, cells);
     configuration.connections = configuration.touching_connections();
     assert_eq!(configuration.problems(), []);
