@@ -2,5 +2,7 @@
 
 pub mod assembly;
 #[cfg(test)]
+mod assembly_laws;
+#[cfg(test)]
 mod assembly_tests;
 mod surface;
