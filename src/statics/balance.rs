@@ -27,6 +27,10 @@ const ROUNDS: usize = 6;
 const LOOSE_CONNECTION: f64 = 1e-6;
 const LOOSE_CONTACT: f64 = 1e-14;
 
+/// For each side of a link that needs balance: the body's index in the block, and
+/// the map from the link's wrench to the body's scaled balance rows.
+type SideMaps = [Option<(usize, Matrix6<f64>)>; 2];
+
 /// Wrench of every link of the block in its frame, as the solver's variables give it.
 pub(super) fn wrenches(program: &Program, iterate: &Iterate) -> Vec<Wrench> {
     let t = iterate.t * program.t_scale;
@@ -68,8 +72,7 @@ pub(super) fn restore(
     field: &mut [Wrench],
 ) {
     let metric = metrics(block, program, iterate, field);
-    let levers: Vec<[Option<(usize, Matrix6<f64>)>; 2]> =
-        (0..field.len()).map(|link| scaled_maps(structure, block, program, link)).collect();
+    let levers: Vec<SideMaps> = (0..field.len()).map(|link| scaled_maps(structure, block, program, link)).collect();
     let Some(mut factor) = factorise(block.bodies.len(), &metric, &levers) else { return };
     for _ in 0..ROUNDS {
         clip(structure, block, field);
@@ -166,12 +169,7 @@ fn metrics(block: &Block, program: &Program, iterate: &Iterate, field: &[Wrench]
 }
 
 /// The maps from a link's wrench to the scaled balance rows of its bodies.
-fn scaled_maps(
-    structure: &Structure,
-    block: &Block,
-    program: &Program,
-    link: usize,
-) -> [Option<(usize, Matrix6<f64>)>; 2] {
+fn scaled_maps(structure: &Structure, block: &Block, program: &Program, link: usize) -> SideMaps {
     let frame = &program.frames[link];
     frame.sides().map(|(side, sign)| {
         let i = local_body(block, side)?;
@@ -190,11 +188,7 @@ fn scaled_maps(
 }
 
 /// Factorises `sum map metric map'`, the stiffness matrix of the block.
-fn factorise(
-    bodies: usize,
-    metric: &[Matrix6<f64>],
-    maps: &[[Option<(usize, Matrix6<f64>)>; 2]],
-) -> Option<QDLDLFactorisation<f64>> {
+fn factorise(bodies: usize, metric: &[Matrix6<f64>], maps: &[SideMaps]) -> Option<QDLDLFactorisation<f64>> {
     let mut blocks: std::collections::BTreeMap<(usize, usize), SMatrix<f64, 6, 6>> =
         (0..bodies).map(|i| ((i, i), Matrix6::zeros())).collect();
     for (metric, sides) in metric.iter().zip(maps) {
