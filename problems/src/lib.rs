@@ -1,1 +1,73 @@
-//! x
+//! The problem library: files to check and to plan, and one manifest that
+//! alone knows the expected answers and where each comes from.
+//!
+//! Knows no robots and no formats: it finds files and reads the manifest.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use indexmap::IndexMap;
+use serde::Deserialize;
+
+/// All expected answers.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+pub struct Manifest {
+    /// Structures by name: `structures/NAME.json`.
+    pub structures: IndexMap<String, StructureCase>,
+}
+
+/// The expected answer to a structure.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StructureCase {
+    /// `stable`, `internally-unstable` or `whole-body-unstable`.
+    pub verdict: String,
+    /// The utilisation; `None` when whole-body unstable.
+    pub utilisation: Option<f64>,
+    /// Tolerance of the utilisation, relative to the larger of 1 and its magnitude.
+    pub rtol: f64,
+    /// Where the answer comes from.
+    pub source: String,
+}
+
+/// The directory of the library.
+pub fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// Reads the manifest.
+///
+/// # Errors
+/// The file cannot be read, or is not a manifest.
+pub fn manifest() -> io::Result<Manifest> {
+    Ok(serde_json::from_slice(&std::fs::read(root().join("manifest.json"))?)?)
+}
+
+/// The JSON files in a directory of the library, by name.
+///
+/// # Errors
+/// The directory cannot be read.
+pub fn json_files(directory: &str) -> io::Result<Vec<PathBuf>> {
+    let entries = std::fs::read_dir(root().join(directory))?;
+    let paths = entries.map(|entry| entry.map(|entry| entry.path())).collect::<io::Result<Vec<_>>>()?;
+    let mut files: Vec<_> = paths.into_iter().filter(|path| path.extension().is_some_and(|e| e == "json")).collect();
+    files.sort();
+    Ok(files)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_structure_has_an_expected_answer_and_the_other_way_round() {
+        let mut expected: Vec<_> = manifest().unwrap().structures.into_keys().collect();
+        expected.sort();
+        let files = json_files("structures").unwrap();
+        let present: Vec<_> =
+            files.iter().map(|path| path.file_stem().unwrap().to_str().unwrap().to_string()).collect();
+        let mut present = present;
+        present.sort();
+        assert_eq!(present, expected);
+    }
+}

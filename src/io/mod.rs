@@ -1,3 +1,34 @@
 //! Files in, files out: wire types, diagnostics with line and column, schemas.
 //!
-//! The only module that names `serde`.
+//! The only module that names `serde`. Every function is pure: text in, value
+//! or diagnostics out; files that a text refers to are fetched by a closure of
+//! the caller. Knows no search and runs no oracle.
+//!
+//! A text passes through four stages, each of which reports all it finds: the
+//! grammar of JSON (`json`), the form of the format (`conform`, by the schema
+//! that is made from the types in `wire`), names and values on their own
+//! (`read`), and what the core types find unsound (`read::faults`).
+
+mod codes;
+mod conform;
+mod diagnostics;
+mod document;
+mod excerpt;
+mod findings;
+mod json;
+mod layout;
+mod read;
+mod schema;
+mod suggest;
+mod wire;
+mod write;
+
+pub use codes::{CODES, Code};
+pub use diagnostics::{Diagnostic, Diagnostics};
+pub use document::{
+    Checkable, NamedStructure, PlanBottleneck, PlanDocument, PlanObjective, PlanOutcome, PlanProof, PlanSequence,
+    PlanStatistics, PlannedAction, PlannedStep, Problem, Resolve, SourceFile, no_references,
+};
+pub use read::{read_catalogue, read_checkable, read_configuration, read_plan, read_problem, read_structure};
+pub use schema::{schema, schema_names};
+pub use write::{NotFinite, write_check, write_configuration, write_plan, write_structure};

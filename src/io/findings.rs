@@ -1,0 +1,229 @@
+//! Collects the problems of files while they are read.
+
+use super::codes::{self, Code};
+use super::diagnostics::{Diagnostic, Diagnostics};
+use super::document::SourceFile;
+use super::excerpt::excerpt;
+use super::json::{self, Member, Node, Span};
+
+/// Most problems that are kept; what is found beyond them is not shown.
+const MOST: usize = 50;
+
+/// Largest file that is read, in bytes. A million modules fit.
+const LARGEST: usize = 64 << 20;
+
+/// The problems found so far.
+#[derive(Debug, Default)]
+pub(super) struct Findings {
+    // Each with its sort key: the file in the order of opening, then the place in it.
+    items: Vec<((usize, u32), Diagnostic)>,
+    files: Vec<String>,
+    truncated: bool,
+}
+
+/// A parsed text.
+#[derive(Debug)]
+pub(super) struct Document<'a> {
+    pub(super) name: &'a str,
+    pub(super) text: &'a str,
+    pub(super) root: Node,
+}
+
+/// A value in a document, which need not exist: a missing one is shown at the
+/// nearest value around it.
+#[derive(Clone, Debug)]
+pub(super) struct Place<'a> {
+    document: &'a Document<'a>,
+    node: &'a Node,
+    exists: bool,
+    path: String,
+}
+
+impl Findings {
+    /// Parses a file; `None` after a problem that leaves nothing to look at.
+    pub(super) fn open<'a>(&mut self, file: &'a SourceFile) -> Option<Document<'a>> {
+        let name = file.name.as_str();
+        self.files.push(name.to_string());
+        if file.bytes.len() > LARGEST {
+            let message =
+                format!("the file has {} MB, more than the {} MB that are read", file.bytes.len() >> 20, LARGEST >> 20);
+            self.push(name, "", Span::new(0, 0), codes::TOO_LARGE, String::new(), message, None);
+            return None;
+        }
+        let text = match std::str::from_utf8(&file.bytes) {
+            Ok(text) => text,
+            Err(error) => {
+                self.not_utf8(file, error.valid_up_to());
+                return None;
+            }
+        };
+        let (root, faults) = json::parse(text);
+        for fault in faults {
+            self.push(name, text, fault.span, fault.code, String::new(), fault.message, fault.hint);
+        }
+        Some(Document { name, text, root: root? })
+    }
+
+    fn not_utf8(&mut self, file: &SourceFile, valid: usize) {
+        let text = std::str::from_utf8(&file.bytes[..valid]).unwrap_or_default();
+        let utf16 = file.bytes.starts_with(&[0xff, 0xfe]) || file.bytes.starts_with(&[0xfe, 0xff]);
+        let hint = if utf16 { "the file looks like UTF-16: save it as UTF-8" } else { "save the file as UTF-8" };
+        let message = format!("the byte 0x{:02x} is not UTF-8 here", file.bytes[valid]);
+        let span = Span::new(valid, valid + 1);
+        self.push(&file.name, text, span, codes::NOT_UTF8, String::new(), message, Some(hint.to_string()));
+    }
+
+    /// Adds a problem of a value.
+    pub(super) fn add(
+        &mut self,
+        place: &Place<'_>,
+        code: Code,
+        message: impl Into<String>,
+        hint: impl Into<Option<String>>,
+    ) {
+        self.add_at(place, place.span(), code, message.into(), hint.into());
+    }
+
+    /// Adds a problem of a value, shown at a place of its own, e.g. its key.
+    pub(super) fn add_at(&mut self, place: &Place<'_>, span: Span, code: Code, message: String, hint: Option<String>) {
+        let message = if place.path.is_empty() { message } else { format!("`{}`: {message}", place.path) };
+        self.push(place.document.name, place.document.text, span, code, place.path.clone(), message, hint);
+    }
+
+    #[expect(clippy::too_many_arguments, reason = "one place that builds a diagnostic")]
+    fn push(
+        &mut self,
+        file: &str,
+        text: &str,
+        span: Span,
+        code: Code,
+        path: String,
+        message: String,
+        hint: Option<String>,
+    ) {
+        if self.items.len() == MOST {
+            self.truncated = true;
+            return;
+        }
+        let shown = excerpt(text, span);
+        let rank = self.files.iter().position(|name| name == file).unwrap_or(self.files.len());
+        let (line, column, excerpt) = (shown.line, shown.column, shown.picture);
+        let item = Diagnostic { code, file: file.to_string(), path, line, column, message, hint, excerpt };
+        self.items.push(((rank, span.start), item));
+    }
+
+    /// Whether further problems would not be kept.
+    pub(super) fn is_full(&self) -> bool {
+        self.items.len() == MOST
+    }
+
+    /// How many problems were found so far.
+    pub(super) fn count(&self) -> usize {
+        self.items.len() + usize::from(self.truncated)
+    }
+
+    /// Notes that there may be more problems than those that are kept.
+    pub(super) fn truncate(&mut self) {
+        self.truncated = true;
+    }
+
+    /// The value read, unless something was found.
+    ///
+    /// # Errors
+    /// All that was found.
+    pub(super) fn finish<T>(mut self, value: Option<T>) -> Result<T, Diagnostics> {
+        match value {
+            Some(value) if self.items.is_empty() => Ok(value),
+            _ => {
+                self.items.sort_by_key(|(place, _)| *place);
+                Err(Diagnostics::new(self.items.into_iter().map(|(_, item)| item).collect(), self.truncated))
+            }
+        }
+    }
+}
+
+impl<'a> Document<'a> {
+    /// The whole document.
+    pub(super) fn root(&'a self) -> Place<'a> {
+        Place { document: self, node: &self.root, exists: true, path: String::new() }
+    }
+}
+
+impl<'a> Place<'a> {
+    /// The member `key` of this object.
+    pub(super) fn key(&self, key: &str) -> Self {
+        self.step(self.node.get(key), &self.key_step(key))
+    }
+
+    /// This member of this object.
+    pub(super) fn member(&self, member: &'a Member) -> Self {
+        self.step(Some(&member.node), &self.key_step(&member.key))
+    }
+
+    fn key_step(&self, key: &str) -> String {
+        let plain = !key.is_empty()
+            && key.len() <= 40
+            && key.bytes().all(|byte| byte.is_ascii_alphanumeric() || matches!(byte, b'_' | b'-' | b'$'));
+        match (plain, self.path.is_empty()) {
+            (true, true) => key.to_string(),
+            (true, false) => format!(".{key}"),
+            (false, _) => format!("[\"{}\"]", json::clipped(key)),
+        }
+    }
+
+    /// This item of this array, at `index`.
+    pub(super) fn item(&self, index: usize, item: &'a Node) -> Self {
+        self.step(Some(item), &format!("[{index}]"))
+    }
+
+    /// The member number `index` of this object.
+    pub(super) fn entry(&self, index: usize) -> Self {
+        match &self.node.value {
+            json::Value::Object(members) if index < members.len() => self.member(&members[index]),
+            _ => self.index(index),
+        }
+    }
+
+    /// The item `index` of this array.
+    pub(super) fn index(&self, index: usize) -> Self {
+        let item = match &self.node.value {
+            json::Value::Array(items) => items.get(index),
+            _ => None,
+        };
+        self.step(item, &format!("[{index}]"))
+    }
+
+    fn step(&self, node: Option<&'a Node>, step: &str) -> Self {
+        let found = node.filter(|_| self.exists);
+        let path = format!("{}{step}", self.path);
+        Self { document: self.document, node: found.unwrap_or(self.node), exists: found.is_some(), path }
+    }
+
+    /// The value, if it exists.
+    pub(super) fn node(&self) -> Option<&'a Node> {
+        self.exists.then_some(self.node)
+    }
+
+    /// The value's text, if it exists.
+    pub(super) fn text(&self) -> Option<&'a str> {
+        self.exists.then(|| &self.document.text[self.node.span.range()])
+    }
+
+    /// A part of the document's text.
+    pub(super) fn source(&self, span: Span) -> &'a str {
+        &self.document.text[span.range()]
+    }
+
+    /// Name of the file.
+    pub(super) fn file(&self) -> &'a str {
+        self.document.name
+    }
+
+    /// Where to show it: the value, or the opening bracket of what it is missing in.
+    pub(super) fn span(&self) -> Span {
+        match self.exists {
+            true => self.node.span,
+            false => Span { start: self.node.span.start, end: self.node.span.start + 1 },
+        }
+    }
+}

@@ -1,0 +1,70 @@
+//! What surrounds a robot and acts on it.
+
+use nalgebra::Translation3;
+
+use super::super::findings::{Findings, Place};
+use super::super::wire;
+use super::catalogue::shape;
+use super::names::Names;
+use super::rotation::{rotation, vector};
+use crate::robot::{Environment, Ground, ModuleLoad, Obstacle, Requirement};
+use crate::spatial::{Pose, Rotation, Vec3};
+
+/// Friction coefficient between modules that touch without being connected,
+/// where a file says nothing. An estimate: dry plastic on plastic.
+const MODULE_FRICTION: f64 = 0.4;
+
+/// The environment at `place`; empty space when there is none.
+pub(super) fn environment(
+    wire: Option<&wire::Environment>,
+    place: &Place<'_>,
+    findings: &mut Findings,
+) -> Option<Environment> {
+    let Some(wire) = wire else {
+        return Some(Environment { module_friction: MODULE_FRICTION, ..Environment::default() });
+    };
+    let obstacles: Vec<_> = wire
+        .obstacles
+        .iter()
+        .enumerate()
+        .map(|(index, wire)| obstacle(wire, &place.key("obstacles").index(index), findings))
+        .collect();
+    let ground = wire.ground.as_ref().map(|g| Ground { height: g.height_m.0, friction: g.friction.0 });
+    let module_friction = wire.module_friction.map_or(MODULE_FRICTION, |friction| friction.0);
+    Some(Environment { ground, obstacles: obstacles.into_iter().collect::<Option<_>>()?, module_friction })
+}
+
+fn obstacle(wire: &wire::Obstacle, place: &Place<'_>, findings: &mut Findings) -> Option<Obstacle> {
+    let shape = shape(&wire.shape, &place.key("shape"), findings);
+    let rotation = match wire.rotation_xyzw {
+        Some(xyzw) => rotation(xyzw, &place.key("rotation_xyzw"), findings),
+        None => Rotation::identity(),
+    };
+    let pose = Pose::from_parts(Translation3::from(vector(wire.position_m)), rotation);
+    Some(Obstacle { shape: shape?, pose, friction: wire.friction.0 })
+}
+
+/// The loads of a list.
+pub(super) fn loads(
+    list: &[wire::ModuleLoad],
+    modules: &Names<'_>,
+    place: &Place<'_>,
+    findings: &mut Findings,
+) -> Vec<ModuleLoad> {
+    let read = |(index, wire): (usize, &wire::ModuleLoad)| {
+        let module = modules.find(&wire.module, &place.index(index).key("module"), findings)?;
+        let torque = wire.torque_nm.map_or_else(Vec3::zeros, vector);
+        Some(ModuleLoad { module, force: vector(wire.force_n), torque, at: wire.at_m.map(vector) })
+    };
+    list.iter().enumerate().filter_map(read).collect()
+}
+
+/// What transient states must satisfy.
+pub(super) fn requirement(wire: Option<&wire::Require>) -> Requirement {
+    let standard = Requirement::default();
+    let Some(wire) = wire else { return standard };
+    Requirement {
+        margin: wire.margin.map_or(standard.margin, |margin| margin.0),
+        connected: wire.connected.unwrap_or(standard.connected),
+    }
+}

@@ -1,0 +1,139 @@
+//! What the core finds wrong with a robot, as problems of the file it came from.
+
+use super::super::codes::{self, Code};
+use super::super::findings::{Findings, Place};
+use super::super::json::clipped;
+use crate::robot::{Configuration, Fault, Part, Problem};
+
+/// Reports the problems of a catalogue that stands at `place`.
+pub(super) fn of_catalogue(problems: &[Problem], place: &Place<'_>, findings: &mut Findings) {
+    for problem in problems {
+        let part = match problem.part {
+            Part::Connector(index) => place.key("connectors").entry(index),
+            Part::ModuleType(index) => place.key("module_types").entry(index),
+            _ => place.clone(),
+        };
+        report(problem, &field(&part, problem.field), None, findings);
+    }
+}
+
+/// Reports the problems of a configuration that stands at `place`.
+pub(super) fn of_configuration(
+    problems: &[Problem],
+    configuration: &Configuration,
+    place: &Place<'_>,
+    findings: &mut Findings,
+) {
+    for problem in problems {
+        let part = match problem.part {
+            Part::Module(index) => place.key("modules").index(index),
+            Part::Connection(index) => place.key("connections").index(index),
+            Part::Obstacle(index) => place.key("environment").key("obstacles").index(index),
+            Part::Load(index) => place.key("loads").index(index),
+            _ => place.clone(),
+        };
+        report(problem, &field(&part, problem.field), Some(configuration), findings);
+    }
+}
+
+/// The key that holds a field of the core's.
+fn field<'a>(part: &Place<'a>, name: &str) -> Place<'a> {
+    let keys: &[&str] = match name {
+        "points" => &["points_m"],
+        "face" => &["connector"],
+        "hinge" => &["hinge"],
+        "module_type" => &["type"],
+        "placement" => &["cell"],
+        "half_extents" => return part.key("bodies").index(0).key("shape").key("cuboid").key("half_extents_m"),
+        "com" => return part.key("bodies").index(0).key("com_m"),
+        _ => &[],
+    };
+    keys.iter().fold(part.clone(), |place, key| place.key(key))
+}
+
+fn report(problem: &Problem, place: &Place<'_>, configuration: Option<&Configuration>, findings: &mut Findings) {
+    if let Some((code, message, hint)) = describe(problem, configuration) {
+        let hint = (!hint.is_empty()).then(|| hint.to_string());
+        findings.add(place, code, message, hint);
+    }
+}
+
+/// Code, message and hint; `None` for what was said already when the file's
+/// form and names were checked.
+fn describe(problem: &Problem, configuration: Option<&Configuration>) -> Option<(Code, String, &'static str)> {
+    let module = |index: usize| match configuration.and_then(|c| c.modules.get(index)) {
+        Some(module) => format!("module `{}`", clipped(&module.id)),
+        None => format!("module {index}"),
+    };
+    let owned = str::to_string;
+    Some(match problem.fault {
+        Fault::NotFinite
+        | Fault::NotPositive
+        | Fault::Negative
+        | Fault::OutOfRange { .. }
+        | Fault::DuplicateName { .. }
+        | Fault::NoModules => return None,
+        Fault::OriginOutsidePatch => (
+            codes::OFF_CENTRE,
+            owned("the origin is not in the convex hull of the points"),
+            "the preload acts at the origin and must press on the points: move the points, or the connection's frame",
+        ),
+        Fault::HingeNotBox => (
+            codes::UNSUPPORTED,
+            owned("a hinge must be a `box` connector"),
+            "its z axis lies along the edge, its torsion is the drive",
+        ),
+        Fault::NotACell => (
+            codes::MIXED,
+            owned("a lattice module is a cube whose edge is the pitch"),
+            "each half extent is half of `pitch_m`",
+        ),
+        Fault::NotSymmetric => (
+            codes::UNSUPPORTED,
+            owned("a lattice module must be the same in all 24 orientations of a cube"),
+            "put the centre of mass at the centre, and give the face connector equal values along x and y",
+        ),
+        Fault::DifferentPitch { first } => {
+            let message = format!("the pitch of its type is not that of {}", module(first));
+            (codes::MIXED, message, "all lattice modules of a configuration share one pitch")
+        }
+        Fault::SameCell { other } => {
+            (codes::OVERLAP, format!("{} is in this cell already", module(other)), "two modules cannot be in one place")
+        }
+        Fault::BelowGround => (
+            codes::OVERLAP,
+            owned("the module reaches below the ground"),
+            "raise the module, or lower `environment.ground.height_m`",
+        ),
+        Fault::InsideObstacle { obstacle } => {
+            let message = format!("the module overlaps obstacle {obstacle}");
+            (
+                codes::OVERLAP,
+                message,
+                "obstacles are counted from 0; `position_m` is the centre of an obstacle, half extents reach to both sides",
+            )
+        }
+        Fault::Disconnected => {
+            let message = format!("no chain of connections leads to {}", module(0));
+            (codes::DISCONNECTED, message, "connect it, or say \"require\": {\"connected\": false} in the start")
+        }
+        Fault::SelfConnection => {
+            (codes::SELF_CONNECTION, owned("connects a module with itself"), "a connection joins ports of two modules")
+        }
+        Fault::FacesApart => (
+            codes::APART,
+            owned("the two faces do not lie on each other"),
+            "ports are the modules' own faces: check the cells, and the rotations if there are any",
+        ),
+        Fault::DuplicateConnection { first } => (
+            codes::DUPLICATE_CONNECTION,
+            format!("joins the same two ports as connections[{first}]"),
+            "remove one of the two",
+        ),
+        Fault::ConnectorsDoNotFit => (
+            codes::MIXED,
+            owned("the connectors of the two faces are of different models"),
+            "only connectors of one model engage: leave this connection out",
+        ),
+    })
+}

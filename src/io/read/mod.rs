@@ -1,0 +1,98 @@
+//! From texts to core types, with everything that is wrong on the way.
+//!
+//! Each reader takes the wire types' values and the places they came from. What
+//! a file means is decided here; how it is written, in [`super::wire`].
+
+mod catalogue;
+mod configuration;
+mod connections;
+mod connector;
+mod decode;
+mod environment;
+mod faults;
+mod goal;
+mod matching;
+mod names;
+mod plan;
+mod rotation;
+mod structure;
+
+use super::diagnostics::Diagnostics;
+use super::document::{Checkable, NamedStructure, PlanDocument, Problem, Resolve, SourceFile};
+use super::findings::Findings;
+use crate::robot::{Catalogue, Configuration};
+
+/// Reads a `structure/1` file.
+///
+/// # Errors
+/// All problems of the file at once.
+pub fn read_structure(file: &SourceFile) -> Result<NamedStructure, Diagnostics> {
+    let mut findings = Findings::default();
+    let document = findings.open(file);
+    let value = document.as_ref().and_then(|document| structure::read(&document.root(), &mut findings));
+    findings.finish(value)
+}
+
+/// Reads a `catalogue/1` file.
+///
+/// # Errors
+/// All problems of the file at once.
+pub fn read_catalogue(file: &SourceFile) -> Result<Catalogue, Diagnostics> {
+    let mut findings = Findings::default();
+    let document = findings.open(file);
+    let value = document.as_ref().and_then(|document| catalogue::read(&document.root(), &mut findings));
+    findings.finish(value)
+}
+
+/// Reads a `configuration/1` file on its own, as a start.
+///
+/// # Errors
+/// All problems of the file, and of the catalogue that it refers to, at once.
+pub fn read_configuration(file: &SourceFile, resolve: Resolve<'_>) -> Result<Configuration, Diagnostics> {
+    let mut findings = Findings::default();
+    let document = findings.open(file);
+    let value =
+        document.as_ref().and_then(|document| configuration::read_start(&document.root(), resolve, &mut findings));
+    findings.finish(value)
+}
+
+/// Reads a start and a goal, and checks them against each other.
+///
+/// # Errors
+/// All problems of both files, and of the catalogues that they refer to, at once.
+pub fn read_problem(start: &SourceFile, goal: &SourceFile, resolve: Resolve<'_>) -> Result<Problem, Diagnostics> {
+    let mut findings = Findings::default();
+    let (start, goal) = (findings.open(start), findings.open(goal));
+    let (start, goal) = (start.as_ref().map(|s| s.root()), goal.as_ref().map(|g| g.root()));
+    let value = goal::read_problem(start.as_ref(), goal.as_ref(), resolve, &mut findings);
+    findings.finish(value)
+}
+
+/// Reads a structure or a configuration, by what its `format` says.
+///
+/// # Errors
+/// All problems of the file, and of the catalogue that it refers to, at once.
+pub fn read_checkable(file: &SourceFile, resolve: Resolve<'_>) -> Result<Checkable, Diagnostics> {
+    let mut findings = Findings::default();
+    let document = findings.open(file);
+    let value = document.as_ref().and_then(|document| {
+        let root = document.root();
+        match decode::format_of(&root, &["structure", "configuration"], &mut findings)? {
+            "structure" => structure::read(&root, &mut findings).map(Checkable::Structure),
+            _ => configuration::read_start(&root, resolve, &mut findings).map(Checkable::Configuration),
+        }
+    });
+    findings.finish(value)
+}
+
+/// Reads a `plan/1` file. Checks its form and its names; whether the plan
+/// holds is for a replay to say.
+///
+/// # Errors
+/// All problems of the file at once.
+pub fn read_plan(file: &SourceFile) -> Result<PlanDocument, Diagnostics> {
+    let mut findings = Findings::default();
+    let document = findings.open(file);
+    let value = document.as_ref().and_then(|document| plan::read(&document.root(), &mut findings));
+    findings.finish(value)
+}

@@ -1,0 +1,117 @@
+//! Unit quaternions, unit vectors and the 24 rotations of a cube.
+
+use nalgebra::Quaternion;
+
+use super::super::codes;
+use super::super::findings::{Findings, Place};
+use super::super::wire::Real;
+use crate::robot::{Face, Orientation};
+use crate::spatial::{Rotation, Vec3};
+
+/// How far a unit quaternion or normal may be off unit length, as the formats
+/// say: six digits written by hand pass, a forgotten component does not.
+const UNIT: f64 = 1e-6;
+
+/// Up to this distance from unit length, a few roundings, normalising again
+/// would only change the last bits, and what is written could not be read back equal.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
+
+/// The rotation of a quaternion `[x, y, z, w]`, normalised.
+pub(super) fn rotation(xyzw: [Real; 4], place: &Place<'_>, findings: &mut Findings) -> Rotation {
+    let [x, y, z, w] = xyzw.map(|real| real.0);
+    let quaternion = Quaternion::new(w, x, y, z);
+    let off = (quaternion.norm() - 1.0).abs();
+    if off <= ROUNDING {
+        return Rotation::new_unchecked(quaternion);
+    }
+    if off > UNIT || off.is_nan() {
+        let message = format!("a quaternion must have length 1, found {:.6}", quaternion.norm());
+        findings.add(place, codes::NOT_UNIT, message, quaternion_hint(quaternion));
+        return Rotation::identity();
+    }
+    Rotation::new_normalize(quaternion)
+}
+
+fn quaternion_hint(quaternion: Quaternion<f64>) -> Option<String> {
+    let norm = quaternion.norm();
+    if !(norm > 0.0 && norm.is_finite()) {
+        return Some("no rotation is [0, 0, 0, 1]".to_string());
+    }
+    let [x, y, z, w] = [quaternion.i, quaternion.j, quaternion.k, quaternion.w].map(|part| part / norm);
+    Some(format!("the order is x, y, z, w; normalised it is [{x:.6}, {y:.6}, {z:.6}, {w:.6}]"))
+}
+
+/// A unit normal, normalised.
+pub(super) fn normal(components: [Real; 3], place: &Place<'_>, findings: &mut Findings) -> Vec3 {
+    let normal = vector(components);
+    let length = normal.norm();
+    let off = (length - 1.0).abs();
+    if off <= ROUNDING {
+        return normal;
+    }
+    if off > UNIT || off.is_nan() {
+        let hint = (length > 0.0 && length.is_finite()).then(|| {
+            let unit = normal / length;
+            format!("normalised it is [{:.6}, {:.6}, {:.6}]", unit.x, unit.y, unit.z)
+        });
+        findings.add(place, codes::NOT_UNIT, format!("a normal must have length 1, found {length:.6}"), hint);
+        return Vec3::z();
+    }
+    normal / length
+}
+
+/// A vector from three numbers.
+pub(super) fn vector(components: [Real; 3]) -> Vec3 {
+    Vec3::from(components.map(|real| real.0))
+}
+
+/// The rotation of a cube that a quaternion stands for.
+pub(super) fn orientation(xyzw: [Real; 4], place: &Place<'_>, findings: &mut Findings) -> Orientation {
+    let wanted = rotation(xyzw, place, findings);
+    // Half the angle is its arc sine, so a thousandth of a degree passes.
+    const SAME: f64 = 1e-5;
+    let same = |candidate: &Orientation| {
+        let found = candidate.rotation();
+        let distance = |sign: f64| (wanted.coords - found.coords * sign).norm();
+        distance(1.0).min(distance(-1.0)) <= SAME
+    };
+    all_orientations().find(same).unwrap_or_else(|| {
+        let hint =
+            "the axes of a cube lie along the world's: the components are 0, 0.5, 0.70710678 or 1, or their negatives";
+        findings.add(place, codes::NOT_UNIT, "not one of the 24 rotations of a lattice module", hint.to_string());
+        Orientation::IDENTITY
+    })
+}
+
+/// The 24 rotations of a cube: a face up, then four turns about it.
+pub(crate) fn all_orientations() -> impl Iterator<Item = Orientation> {
+    let quarter = Orientation::quarter_turn;
+    let up = [
+        Orientation::IDENTITY,
+        quarter(Face::PosX),
+        quarter(Face::NegX),
+        quarter(Face::PosY),
+        quarter(Face::NegY),
+        quarter(Face::PosX).turned(quarter(Face::PosX)),
+    ];
+    up.into_iter().flat_map(move |tilt| {
+        (0..4).scan(tilt, move |turned, _| {
+            let this = *turned;
+            *turned = turned.turned(quarter(Face::PosZ));
+            Some(this)
+        })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::all_orientations;
+
+    #[test]
+    fn a_cube_has_24_rotations() {
+        let mut all: Vec<_> = all_orientations().collect();
+        all.sort();
+        all.dedup();
+        assert_eq!(all.len(), 24);
+    }
+}

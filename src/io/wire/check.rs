@@ -1,0 +1,109 @@
+//! `check/1`: what the oracle says of one structure.
+
+use indexmap::IndexMap;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::number::Real;
+use super::plan::Bracket;
+
+/// Name and version of the format.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+pub(crate) enum CheckFormat {
+    /// The first version.
+    #[serde(rename = "check/1")]
+    V1,
+}
+
+/// What the oracle says of one structure. SI units.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Check {
+    /// Name and version of the format.
+    pub(crate) format: CheckFormat,
+    /// What is proved.
+    pub(crate) verdict: Verdict,
+    /// Why nothing is proved, for an undecided verdict.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) undecided_because: Option<String>,
+    /// Smallest common factor on all rated strengths with which it stands; null when whole-body-unstable.
+    pub(crate) utilisation: Option<Bracket>,
+    /// 1 less the utilisation; null when whole-body-unstable.
+    pub(crate) margin: Option<Bracket>,
+    /// Strength by connector with which it is proved to stand; null when none is known.
+    pub(crate) required_strength_n: Option<IndexMap<String, Real>>,
+    /// The connections in one state with this utilisation; empty when whole-body-unstable.
+    pub(crate) connections: Vec<CheckedConnection>,
+    /// The contacts in that state; empty when whole-body-unstable.
+    pub(crate) contacts: Vec<CheckedContact>,
+    /// What needed no optimisation.
+    pub(crate) left_out: LeftOut,
+    /// Wall-clock time in s.
+    pub(crate) seconds: Real,
+}
+
+/// What is proved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum Verdict {
+    /// Every connection can hold.
+    Stable,
+    /// Some connection must break.
+    InternallyUnstable,
+    /// No connection strength helps: it tips, slides or falls.
+    WholeBodyUnstable,
+    /// Neither could be proved.
+    Undecided,
+}
+
+/// A connection in the returned state.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct CheckedConnection {
+    /// Its name.
+    pub(crate) id: String,
+    /// Strength that it must provide; null when no strength suffices.
+    pub(crate) strength_n: Option<Real>,
+    /// That strength over the rated one; null when no strength suffices.
+    pub(crate) utilisation: Option<Real>,
+    /// Wrench on the child, at the connection point, in the connection frame.
+    pub(crate) wrench: Wrench,
+    /// Whether it breaks in the collapse mechanism.
+    pub(crate) critical: bool,
+}
+
+/// A force and a torque.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Wrench {
+    /// Force.
+    pub(crate) force_n: [Real; 3],
+    /// Torque.
+    pub(crate) torque_nm: [Real; 3],
+}
+
+/// A contact in the returned state.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct CheckedContact {
+    /// Its name.
+    pub(crate) id: String,
+    /// Force on its `body`, in the world frame.
+    pub(crate) force_n: [Real; 3],
+}
+
+/// What needed no optimisation.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct LeftOut {
+    /// Fixed bodies, which need no balance.
+    pub(crate) fixed_bodies: u64,
+    /// Connections whose wrench follows from balance alone.
+    pub(crate) closed_form_connections: u64,
+    /// Contacts whose force follows from balance alone.
+    pub(crate) closed_form_contacts: u64,
+    /// Blocks that a conic program was solved for.
+    pub(crate) solved_blocks: u64,
+    /// Free bodies in the largest such block.
+    pub(crate) largest_block_bodies: u64,
+}

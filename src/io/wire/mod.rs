@@ -1,0 +1,27 @@
+//! The files' own types: key for key what the formats say, and nothing more.
+//!
+//! The JSON Schemas, which also check every file that is read, are made from
+//! these types. Knows no core type; [`super::read`] and [`super::write`] convert.
+
+mod catalogue;
+mod check;
+mod configuration;
+mod connector;
+mod errors;
+mod number;
+mod plan;
+mod structure;
+
+pub(super) use catalogue::{BodyType, Catalogue, CatalogueFormat, Faces, ModuleType, Motion, Ports, Shape};
+pub(super) use check::{Check, CheckFormat, CheckedConnection, CheckedContact, LeftOut, Verdict, Wrench};
+pub(super) use configuration::{
+    CatalogueRef, Configuration, ConfigurationFormat, Connections, Environment, FrameMatch, Ground, Match, Module,
+    ModuleLoad, ModuleMatch, Obstacle, PairConnection, Require, RolledConnection,
+};
+pub(super) use connector::Connector;
+pub(super) use errors::{Errors, ErrorsFormat, FileError};
+pub(super) use number::{Bound, Limit, NonNegative, Positive, Real, reals};
+pub(super) use plan::{
+    Action, Alternative, Axis, Bottleneck, Bracket, CellTarget, Objective, Outcome, Plan, PlanFormat, Proof, Statistics,
+};
+pub(super) use structure::{Body, Connection, Contact, Load, Structure, StructureFormat};

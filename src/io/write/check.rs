@@ -1,0 +1,54 @@
+//! An assessment to `check/1`.
+
+use super::super::document::NamedStructure;
+use super::super::wire::{self, Real};
+use super::{bracket, vector};
+use crate::statics::{Assessment, ConnectionState, Verdict};
+
+pub(super) fn wire(named: &NamedStructure, assessment: &Assessment, seconds: f64) -> wire::Check {
+    let held = assessment.verdict != Verdict::WholeBodyUnstable;
+    let (upper, left_out) = (assessment.utilisation.upper, &assessment.left_out);
+    let strengths = || {
+        let connectors = named.structure.connectors.iter();
+        connectors.map(|connector| (connector.name.clone(), Real(connector.strength * upper))).collect()
+    };
+    let connections = assessment.connections.iter().zip(&named.connections).filter(|_| held);
+    let contacts = assessment.contacts.iter().zip(&named.contacts).filter(|_| held);
+    wire::Check {
+        format: wire::CheckFormat::V1,
+        verdict: match assessment.verdict {
+            Verdict::Stable => wire::Verdict::Stable,
+            Verdict::InternallyUnstable => wire::Verdict::InternallyUnstable,
+            Verdict::WholeBodyUnstable => wire::Verdict::WholeBodyUnstable,
+            Verdict::Undecided => wire::Verdict::Undecided,
+        },
+        undecided_because: assessment.undecided_because.clone(),
+        utilisation: held.then(|| bracket(assessment.utilisation)),
+        margin: held.then(|| bracket(assessment.margin())),
+        required_strength_n: (held && upper.is_finite()).then(strengths),
+        connections: connections.map(|(state, id)| connection(id, state)).collect(),
+        contacts: contacts
+            .map(|(force, id)| wire::CheckedContact { id: id.clone(), force_n: vector(*force) })
+            .collect(),
+        left_out: wire::LeftOut {
+            fixed_bodies: left_out.fixed_bodies as u64,
+            closed_form_connections: left_out.closed_form_connections as u64,
+            closed_form_contacts: left_out.closed_form_contacts as u64,
+            solved_blocks: left_out.solved_blocks as u64,
+            largest_block_bodies: left_out.largest_block_bodies as u64,
+        },
+        seconds: Real(seconds),
+    }
+}
+
+// A latch that cannot carry a component at all demands an infinite strength for it.
+fn connection(id: &str, state: &ConnectionState) -> wire::CheckedConnection {
+    let finite = |value: f64| (value != f64::INFINITY).then_some(Real(value));
+    wire::CheckedConnection {
+        id: id.to_string(),
+        strength_n: finite(state.strength),
+        utilisation: finite(state.utilisation),
+        wrench: wire::Wrench { force_n: vector(state.wrench.force), torque_nm: vector(state.wrench.torque) },
+        critical: state.critical,
+    }
+}

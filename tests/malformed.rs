@@ -1,0 +1,81 @@
+//! Every broken file of the library gives exactly the error output that stands
+//! beside it. `STEADFAST_WRITE=1 cargo test --test malformed` writes the outputs
+//! anew, to be read one by one.
+
+use std::path::{Path, PathBuf};
+
+use libtest_mimic::{Arguments, Failed, Trial};
+use steadfast::io::{
+    Diagnostics, SourceFile, no_references, read_catalogue, read_configuration, read_plan, read_problem, read_structure,
+};
+
+const KINDS: [&str; 5] = ["structure", "catalogue", "configuration", "goal", "plan"];
+
+fn main() {
+    let mut trials = Vec::new();
+    for kind in KINDS {
+        for path in problems::json_files(&format!("malformed/{kind}")).expect("the directory is there") {
+            let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+            trials.push(Trial::test(format!("{kind}/{name}"), move || check(kind, &path)));
+        }
+    }
+    trials.push(Trial::test("ten megabytes of brackets", || bounded("[".repeat(10_000_000))));
+    trials.push(Trial::test("ten megabytes of nested objects", || bounded("{\"a\":".repeat(2_000_000))));
+    trials.push(Trial::test("ten megabytes of unknown keys", || {
+        let keys: Vec<_> = (0..700_000).map(|i| format!("\"k{i:07}\":1")).collect();
+        bounded(format!("{{\"format\":\"structure/1\",{}}}", keys.join(",")))
+    }));
+    trials.push(Trial::test("ten megabytes in one line", || {
+        bounded(format!("{{\"format\":\"structure/1\",\"bodies\":[{}1]}}", "1,".repeat(5_000_000)))
+    }));
+    libtest_mimic::run(&Arguments::from_args(), trials).exit();
+}
+
+fn read(kind: &str, file: &SourceFile) -> Result<(), Diagnostics> {
+    match kind {
+        "structure" => read_structure(file).map(drop),
+        "catalogue" => read_catalogue(file).map(drop),
+        "configuration" => read_configuration(file, &references).map(drop),
+        "plan" => read_plan(file).map(drop),
+        _ => {
+            let start = SourceFile::new("start.json", include_bytes!("../problems/malformed/start.json"));
+            read_problem(&start, file, &no_references).map(drop)
+        }
+    }
+}
+
+/// Files beside the malformed ones.
+fn references(_from: &str, reference: &str) -> Result<SourceFile, String> {
+    let path = problems::root()
+        .join("malformed")
+        .join(Path::new(reference).strip_prefix("..").unwrap_or(Path::new(reference)));
+    let bytes = std::fs::read(path).map_err(|_| "there is no such file".to_string())?;
+    Ok(SourceFile::new(reference, bytes))
+}
+
+fn check(kind: &str, path: &PathBuf) -> Result<(), Failed> {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let file = SourceFile::new(name, std::fs::read(path)?);
+    let Err(diagnostics) = read(kind, &file) else { return Err("the file is accepted".into()) };
+    let (found, expected) = (diagnostics.to_string(), path.with_extension("stderr"));
+    if std::env::var_os("STEADFAST_WRITE").is_some() {
+        std::fs::write(&expected, &found)?;
+    }
+    let expected = std::fs::read_to_string(expected)?;
+    if found != expected {
+        return Err(format!("found\n{found}\nexpected\n{expected}").into());
+    }
+    Ok(())
+}
+
+/// A hostile file must be refused in few words.
+fn bounded(text: String) -> Result<(), Failed> {
+    let Err(diagnostics) = read("structure", &SourceFile::new("hostile.json", text)) else {
+        return Err("the file is accepted".into());
+    };
+    let shown = diagnostics.to_string();
+    if shown.len() > 20_000 {
+        return Err(format!("{} bytes of errors", shown.len()).into());
+    }
+    Ok(())
+}
