@@ -2,10 +2,13 @@
 
 use std::sync::Arc;
 
+use petgraph::unionfind::UnionFind;
+
 use crate::spatial::{Pose, Vec3};
 
-use super::catalogue::{Catalogue, Shape};
+use super::catalogue::{Catalogue, ModuleType, Shape};
 use super::lattice::{Face, Placement};
+use super::occupancy::{Occupancy, connection};
 
 /// A module of a configuration.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,6 +37,18 @@ pub struct Port {
 pub struct FaceConnection {
     /// The two ports, the smaller one first.
     pub ports: [Port; 2],
+}
+
+impl FaceConnection {
+    /// A connection between two ports, in either order.
+    pub fn new(a: Port, b: Port) -> Self {
+        Self { ports: if a <= b { [a, b] } else { [b, a] } }
+    }
+
+    /// The two modules, in the order of the ports.
+    pub fn modules(&self) -> [usize; 2] {
+        self.ports.map(|port| port.module)
+    }
 }
 
 /// Horizontal frictional ground, filling everything below its height.
@@ -112,6 +127,82 @@ pub struct Configuration {
     pub loads: Vec<ModuleLoad>,
     /// What transient states must satisfy.
     pub require: Requirement,
+}
+
+impl Configuration {
+    /// The type of a module.
+    pub fn module_type(&self, module: usize) -> &ModuleType {
+        &self.catalogue.module_types[self.modules[module].module_type]
+    }
+
+    /// Edge length of a cell in m: that of the first module's type, which a
+    /// sound configuration shares among all; 1 without modules.
+    pub fn pitch(&self) -> f64 {
+        self.modules
+            .first()
+            .and_then(|m| self.catalogue.module_types.get(m.module_type))
+            .map_or(1.0, |module_type| module_type.lattice.pitch)
+    }
+
+    /// Pose of a module's frame in W.
+    pub fn pose(&self, module: usize) -> Pose {
+        self.modules[module].placement.pose(self.module_type(module).lattice.pitch)
+    }
+
+    /// The occupied cells.
+    pub fn occupancy(&self) -> Occupancy {
+        Occupancy::of_modules(&self.modules)
+    }
+
+    /// The world direction that a port looks in.
+    pub fn direction(&self, port: Port) -> Face {
+        self.modules[port.module].placement.orientation.to_world(port.face)
+    }
+
+    /// Every pair of coinciding faces, connectable or not, sorted.
+    pub fn touching_faces(&self) -> Vec<FaceConnection> {
+        let pairs = self.occupancy().touching_pairs();
+        let mut faces: Vec<_> = pairs.into_iter().map(|(a, face, b)| connection(&self.modules, a, face, b)).collect();
+        faces.sort_unstable();
+        faces
+    }
+
+    /// Every connection that could be engaged: the coinciding faces whose
+    /// connectors fit each other, sorted.
+    pub fn touching_connections(&self) -> Vec<FaceConnection> {
+        let mut connections = self.touching_faces();
+        connections.retain(|c| {
+            let [a, b] = c.modules().map(|m| self.modules[m].module_type);
+            self.catalogue.face_connector(a, b).is_some()
+        });
+        connections
+    }
+
+    /// For each module the smallest index of a module that it is connected to,
+    /// directly or through others, by `connections`. Fixed modules are not
+    /// connected to each other by the world.
+    pub fn components(&self) -> Vec<usize> {
+        let count = self.modules.len();
+        let mut sets = UnionFind::<usize>::new(count);
+        for [a, b] in self.connections.iter().map(FaceConnection::modules) {
+            if a < count && b < count {
+                sets.union(a, b);
+            }
+        }
+        let mut smallest = vec![usize::MAX; count];
+        (0..count)
+            .map(|module| {
+                let first = &mut smallest[sets.find(module)];
+                *first = module.min(*first);
+                *first
+            })
+            .collect()
+    }
+
+    /// Whether `connections` join all modules. True without modules.
+    pub fn is_connected(&self) -> bool {
+        self.components().iter().all(|&component| component == 0)
+    }
 }
 
 /// How a goal is compared with a state.

@@ -1,6 +1,10 @@
 //! Integer placements in the cubic lattice, from which poses are derived: a
 //! plan run forwards and backwards returns the identical state.
 
+use nalgebra::{Matrix3, Rotation3, Translation3};
+
+use crate::spatial::{Pose, Rotation, Vec3};
+
 /// A lattice cell: it fills `[x, x+1] x [y, y+1] x [z, z+1]` times the pitch.
 pub type Cell = [i32; 3];
 
@@ -55,6 +59,20 @@ impl Face {
         }
     }
 
+    /// Outward normal as a unit vector.
+    pub fn normal(self) -> Vec3 {
+        Vec3::from(self.step().map(f64::from))
+    }
+
+    /// Index of the axis it is perpendicular to: 0 for x, 1 for y, 2 for z.
+    pub const fn axis(self) -> usize {
+        match self {
+            Self::NegX | Self::PosX => 0,
+            Self::NegY | Self::PosY => 1,
+            Self::NegZ | Self::PosZ => 2,
+        }
+    }
+
     /// Name as files write it, e.g. `+x`.
     pub const fn name(self) -> &'static str {
         match self {
@@ -101,6 +119,12 @@ impl Orientation {
         Self(std::array::from_fn(|i| std::array::from_fn(|j| (0..3).map(|k| a[i][k] * b[k][j]).sum())))
     }
 
+    /// The same rotation as a unit quaternion.
+    pub fn rotation(self) -> Rotation {
+        let matrix = Matrix3::from_fn(|i, j| f64::from(self.0[i][j]));
+        Rotation::from_rotation_matrix(&Rotation3::from_matrix_unchecked(matrix))
+    }
+
     /// The world direction that the module's face points in.
     pub fn to_world(self, face: Face) -> Face {
         let step = face.step();
@@ -121,4 +145,28 @@ pub struct Placement {
     pub cell: Cell,
     /// How it is turned.
     pub orientation: Orientation,
+}
+
+impl Placement {
+    /// In this cell, with the module's axes along the world's.
+    pub const fn new(cell: Cell) -> Self {
+        Self { cell, orientation: Orientation::IDENTITY }
+    }
+
+    /// Pose of the module frame in W, for cells of edge length `pitch` in m:
+    /// the origin is the centre of the cube.
+    pub fn pose(&self, pitch: f64) -> Pose {
+        Pose::from_parts(Translation3::from(self.centre(pitch)), self.orientation.rotation())
+    }
+
+    /// Centre of the cell in W, in m.
+    pub fn centre(&self, pitch: f64) -> Vec3 {
+        Vec3::from(self.cell.map(|c| (f64::from(c) + 0.5) * pitch))
+    }
+}
+
+/// The cell one step beyond a face of `cell`; `None` where the coordinates overflow.
+pub fn neighbour(cell: Cell, face: Face) -> Option<Cell> {
+    let step = face.step();
+    Some([cell[0].checked_add(step[0])?, cell[1].checked_add(step[1])?, cell[2].checked_add(step[2])?])
 }

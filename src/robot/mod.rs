@@ -1,13 +1,24 @@
-//! Robots as data: module types, catalogues, configurations.
+//! Robots as data: module types, catalogues, configurations, and what can be
+//! said about them without forces: poses, occupied cells, touching faces,
+//! connectedness, and everything that makes the data unsound.
 //!
-//! Knows poses and connector models; knows no search, no collision, no files.
+//! Knows poses and connector models; knows no search, no collision of solids,
+//! no files.
 
+mod built_in;
 mod catalogue;
+mod catalogue_check;
 mod configuration;
+mod configuration_check;
 mod lattice;
+mod occupancy;
+mod problem;
 
+pub use built_in::BUILT_IN;
 pub use catalogue::{BodyType, Catalogue, LatticeType, ModuleType, Shape};
 pub use configuration::{
     Configuration, Environment, FaceConnection, Goal, Ground, Matching, Module, ModuleLoad, Obstacle, Port, Requirement,
 };
-pub use lattice::{Cell, Face, Orientation, Placement};
+pub use lattice::{Cell, Face, Orientation, Placement, neighbour};
+pub use occupancy::Occupancy;
+pub use problem::{Fault, Part, Problem};

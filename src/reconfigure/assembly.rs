@@ -1,0 +1,325 @@
+//! From a robot at one moment to the structure that the oracle assesses.
+//!
+//! Knows which faces hold, which touch and where; knows neither actions nor
+//! what the oracle makes of the structure.
+
+use nalgebra::{Matrix3, Rotation3, Translation3};
+
+use crate::geometry::{ContactPatch, Solid, TOUCH, contact, ground_contact};
+use crate::robot::{Configuration, Face, FaceConnection, Occupancy, Placement};
+use crate::spatial::{Pose, Rotation, Vec3};
+use crate::statics::{Anchor, Body, Connection, Connector, Contact, Load, Structure};
+
+use super::surface::{Surface, full_face, scaled};
+
+/// Share of a face's edge below which two faces do not overlap at all.
+const NO_OVERLAP: f64 = 1e-9;
+
+/// A robot at one moment: all modules at rest in the lattice, but for at most
+/// one that is on its way.
+#[derive(Clone, Debug)]
+pub struct Transient<'a> {
+    /// Where each module is; the moving module's entry is not used.
+    pub placements: &'a [Placement],
+    /// The module on its way.
+    pub moving: Option<Moving>,
+    /// What holds the modules together.
+    pub engaged: &'a [Engagement],
+}
+
+/// A module that is anywhere.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Moving {
+    /// Its index.
+    pub module: usize,
+    /// Pose of its frame in W.
+    pub pose: Pose,
+}
+
+/// One connection that holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Engagement {
+    /// Two faces, as far as they overlap: wholly in the lattice, partly while
+    /// one slides over the other.
+    Face {
+        /// The two modules, parent first.
+        modules: [usize; 2],
+        /// World direction from the first to the second.
+        towards: Face,
+    },
+    /// A module that pivots about an edge.
+    Hinge {
+        /// The module that stays.
+        parent: usize,
+        /// The module that pivots.
+        child: usize,
+        /// Centre of the edge, z along it, in W.
+        frame: Pose,
+    },
+}
+
+impl Engagement {
+    /// A configuration's connection.
+    pub fn face(configuration: &Configuration, connection: &FaceConnection) -> Self {
+        let towards = configuration.direction(connection.ports[0]);
+        Self::Face { modules: connection.modules(), towards }
+    }
+
+    /// The two modules, parent first.
+    pub const fn modules(&self) -> [usize; 2] {
+        match *self {
+            Self::Face { modules, .. } => modules,
+            Self::Hinge { parent, child, .. } => [parent, child],
+        }
+    }
+}
+
+/// What a module touches.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Touched {
+    /// The module with this index.
+    Module(usize),
+    /// The ground.
+    Ground,
+    /// The obstacle with this index.
+    Obstacle(usize),
+}
+
+/// A structure with the way back to the robot. Body i is module i.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Assembly {
+    /// The oracle's input.
+    pub structure: Structure,
+    /// What each of the structure's connections is, as an index into
+    /// [`Transient::engaged`].
+    pub connections: Vec<usize>,
+    /// What each of the structure's contacts is between: the module that the
+    /// normal points into, and what it touches.
+    pub contacts: Vec<(usize, Touched)>,
+}
+
+/// Assembles structures of one robot, over and over: everything that does not
+/// depend on where the modules are is prepared once.
+#[derive(Clone, Debug)]
+pub struct Assembler<'a> {
+    configuration: &'a Configuration,
+    pitch: f64,
+    /// The catalogue's connectors, as they are on a full face.
+    connectors: Vec<Connector>,
+    /// How two module types meet, by first times the number of types plus second.
+    surfaces: Vec<Surface>,
+    obstacles: Vec<Solid>,
+}
+
+/// The structure of a configuration as it stands.
+pub fn assemble(configuration: &Configuration) -> Assembly {
+    let placements: Vec<_> = configuration.modules.iter().map(|m| m.placement).collect();
+    let engaged: Vec<_> = configuration.connections.iter().map(|c| Engagement::face(configuration, c)).collect();
+    Assembler::new(configuration).assemble(&Transient { placements: &placements, moving: None, engaged: &engaged })
+}
+
+impl<'a> Assembler<'a> {
+    /// Prepares for states of `configuration`'s modules in its environment and
+    /// under its loads; its placements and connections play no part.
+    /// `configuration` must be sound (have no [`Configuration::problems`]).
+    pub fn new(configuration: &'a Configuration) -> Self {
+        let catalogue = &configuration.catalogue;
+        let pitch = configuration.pitch();
+        let types = catalogue.module_types.len();
+        let surfaces = (0..types * types)
+            .map(|i| Surface::between(catalogue, i / types, i % types, configuration.environment.module_friction))
+            .collect();
+        Self {
+            configuration,
+            pitch,
+            connectors: catalogue.connectors.iter().map(|c| full_face(c, pitch)).collect(),
+            surfaces,
+            obstacles: configuration.environment.obstacles.iter().map(Solid::from).collect(),
+        }
+    }
+
+    /// The structure of a state. Engagements that hold nothing are left out:
+    /// faces without overlap, or whose connectors do not fit; hinges of modules
+    /// that have none. A connection of the configuration's kind is at the centre of
+    /// the overlap, with z from parent to child and x along the world axis that
+    /// follows the normal's in the order x, y, z, x.
+    pub fn assemble(&self, state: &Transient) -> Assembly {
+        let mut assembly = Assembly {
+            structure: Structure {
+                gravity: self.configuration.gravity,
+                connectors: self.connectors.clone(),
+                ..Structure::default()
+            },
+            connections: Vec::new(),
+            contacts: Vec::new(),
+        };
+        let poses: Vec<_> = (0..self.configuration.modules.len()).map(|m| self.pose(state, m)).collect();
+        self.add_bodies(&mut assembly, &poses);
+        for (index, engagement) in state.engaged.iter().enumerate() {
+            if let Some(connection) = self.connection(&mut assembly.structure, &poses, engagement) {
+                assembly.structure.connections.push(connection);
+                assembly.connections.push(index);
+            }
+        }
+        self.add_module_contacts(&mut assembly, state, &poses);
+        self.add_environment_contacts(&mut assembly, &poses);
+        assembly
+    }
+
+    fn pose(&self, state: &Transient, module: usize) -> Pose {
+        match &state.moving {
+            Some(moving) if moving.module == module => moving.pose,
+            _ => state.placements[module].pose(self.pitch),
+        }
+    }
+
+    fn add_bodies(&self, assembly: &mut Assembly, poses: &[Pose]) {
+        let structure = &mut assembly.structure;
+        structure.bodies.extend(self.configuration.modules.iter().zip(poses).enumerate().map(|(i, (module, pose))| {
+            let body = &self.configuration.module_type(i).body;
+            Body { mass: body.mass, com: (pose * nalgebra::Point3::from(body.com)).coords, fixed: module.fixed }
+        }));
+        structure.loads.extend(self.configuration.loads.iter().map(|load| Load {
+            body: load.module,
+            force: load.force,
+            torque: load.torque,
+            at: load.at.map(|at| (poses[load.module] * nalgebra::Point3::from(at)).coords),
+        }));
+    }
+
+    fn connection(&self, structure: &mut Structure, poses: &[Pose], engagement: &Engagement) -> Option<Connection> {
+        let [parent, child] = engagement.modules();
+        let (connector, frame) = match engagement {
+            Engagement::Face { towards, .. } => {
+                let connector = self.surface(parent, child).connector?;
+                let rotation = face_frame(*towards);
+                let offset = rotation.inverse_transform_vector(&(centre(poses, child) - centre(poses, parent)));
+                let extent = [offset.x, offset.y].map(|o| (1.0 - o.abs() / self.pitch).min(1.0));
+                if !(extent[0] > NO_OVERLAP && extent[1] > NO_OVERLAP) {
+                    return None;
+                }
+                let to_overlap = rotation * Vec3::new(offset.x / 2.0, offset.y / 2.0, self.pitch / 2.0);
+                let frame = Pose::from_parts(Translation3::from(centre(poses, parent) + to_overlap), rotation);
+                (scaled_connector(structure, connector, extent), frame)
+            }
+            Engagement::Hinge { frame, .. } => {
+                let types = [child, parent].map(|m| self.configuration.modules[m].module_type);
+                (self.configuration.catalogue.hinge(types[0], types[1])?, *frame)
+            }
+        };
+        Some(Connection { parent: Anchor::Body(parent), child: Anchor::Body(child), connector, frame })
+    }
+
+    fn add_module_contacts(&self, assembly: &mut Assembly, state: &Transient, poses: &[Pose]) {
+        let mut held: Vec<[usize; 2]> = Vec::with_capacity(state.engaged.len());
+        for &index in &assembly.connections {
+            if let Engagement::Face { modules: [a, b], .. } = state.engaged[index]
+                && self.surface(a, b).contained
+            {
+                held.push([a.min(b), a.max(b)]);
+            }
+        }
+        held.sort_unstable();
+        let carries = |a: usize, b: usize| !self.both_fixed(a, b) && held.binary_search(&[a.min(b), a.max(b)]).is_err();
+
+        let moving = state.moving.map(|m| m.module);
+        let resting = state.placements.iter().enumerate().filter(|(m, _)| Some(*m) != moving);
+        let occupancy = Occupancy::new(resting.map(|(m, placement)| (placement.cell, m)));
+        for (a, towards, b) in occupancy.touching_pairs() {
+            if carries(a, b) {
+                let points = self.surface(a, b).face_points(self.pitch);
+                let frame = face_frame(towards);
+                let origin = centre(poses, a) + towards.normal() * (self.pitch / 2.0);
+                let points = points.iter().map(|[x, y]| origin + frame * Vec3::new(*x, *y, 0.0)).collect();
+                self.add_pair(assembly, a, b, ContactPatch { normal: -towards.normal(), points });
+            }
+        }
+
+        let Some(m) = moving else { return };
+        let solid = self.solid(m, poses);
+        // Beyond the diagonal of a cube nothing can touch.
+        let near = 1.8 * self.pitch;
+        for (_, other) in occupancy.iter() {
+            if (centre(poses, other) - centre(poses, m)).amax() > near || !carries(m, other) {
+                continue;
+            }
+            if let Some(mut patch) = contact(&solid, &self.solid(other, poses), TOUCH * self.pitch) {
+                self.surface(m, other).shrink(&mut patch.points);
+                self.add_pair(assembly, m, other, patch);
+            }
+        }
+    }
+
+    fn add_pair(&self, assembly: &mut Assembly, body: usize, against: usize, patch: ContactPatch) {
+        let friction = self.surface(body, against).friction;
+        add_contacts(assembly, body, Touched::Module(against), friction, patch);
+    }
+
+    fn add_environment_contacts(&self, assembly: &mut Assembly, poses: &[Pose]) {
+        let tolerance = TOUCH * self.pitch;
+        for (module, description) in self.configuration.modules.iter().enumerate() {
+            if description.fixed {
+                continue;
+            }
+            let solid = self.solid(module, poses);
+            if let Some(ground) = &self.configuration.environment.ground
+                && let Some(patch) = ground_contact(&solid, ground.height, tolerance)
+            {
+                add_contacts(assembly, module, Touched::Ground, ground.friction, patch);
+            }
+            for (index, obstacle) in self.obstacles.iter().enumerate() {
+                if let Some(patch) = contact(&solid, obstacle, tolerance) {
+                    let friction = self.configuration.environment.obstacles[index].friction;
+                    add_contacts(assembly, module, Touched::Obstacle(index), friction, patch);
+                }
+            }
+        }
+    }
+
+    fn surface(&self, a: usize, b: usize) -> &Surface {
+        let modules = &self.configuration.modules;
+        &self.surfaces
+            [modules[a].module_type * self.configuration.catalogue.module_types.len() + modules[b].module_type]
+    }
+
+    fn both_fixed(&self, a: usize, b: usize) -> bool {
+        self.configuration.modules[a].fixed && self.configuration.modules[b].fixed
+    }
+
+    fn solid(&self, module: usize, poses: &[Pose]) -> Solid {
+        Solid::new(self.configuration.module_type(module).body.shape.clone(), poses[module])
+    }
+}
+
+fn centre(poses: &[Pose], module: usize) -> Vec3 {
+    poses[module].translation.vector
+}
+
+/// Axes of a connection frame on a face that looks in world direction `towards`:
+/// z outwards, x along the world axis after the normal's.
+fn face_frame(towards: Face) -> Rotation {
+    let z = towards.normal();
+    let x = Vec3::ith((towards.axis() + 1) % 3, 1.0);
+    Rotation::from_rotation_matrix(&Rotation3::from_matrix_unchecked(Matrix3::from_columns(&[x, z.cross(&x), z])))
+}
+
+/// The index of the connector scaled to a partly overlapped face, added to the structure.
+fn scaled_connector(structure: &mut Structure, connector: usize, extent: [f64; 2]) -> usize {
+    if extent == [1.0, 1.0] {
+        return connector;
+    }
+    let part = scaled(&structure.connectors[connector], extent);
+    structure.connectors.push(part);
+    structure.connectors.len() - 1
+}
+
+fn add_contacts(assembly: &mut Assembly, body: usize, touched: Touched, friction: f64, patch: ContactPatch) {
+    let against = match touched {
+        Touched::Module(other) => Anchor::Body(other),
+        Touched::Ground | Touched::Obstacle(_) => Anchor::World,
+    };
+    for position in patch.points {
+        assembly.structure.contacts.push(Contact { body, against, position, normal: patch.normal, friction });
+        assembly.contacts.push((body, touched));
+    }
+}
