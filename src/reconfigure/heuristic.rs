@@ -14,7 +14,7 @@ use pathfinding::prelude::{Matrix, kuhn_munkres_min};
 
 use crate::robot::Cell;
 
-use super::layout::Layout;
+use super::layout::{Layout, displaced};
 
 /// Fewest moves that bring a module from one cell to another.
 pub fn fewest_moves(from: Cell, to: Cell) -> u32 {
@@ -37,9 +37,14 @@ impl Targets {
         Self { cells: by_class(goal, fixed.len()), fixed }
     }
 
-    /// Whether the layout fills them, whatever its orientations.
-    pub fn are_met_by(&self, layout: &Layout) -> bool {
-        by_class(layout, self.fixed.len()) == self.cells
+    /// Whether the layout fills them, displaced by `offset` cells, whatever its orientations.
+    pub fn are_met_by(&self, layout: &Layout, offset: Cell) -> bool {
+        let present = by_class(layout, self.fixed.len());
+        present.iter().zip(&self.cells).all(|(present, targets)| {
+            // Both ascend, and a displacement keeps the order.
+            present.len() == targets.len()
+                && present.iter().zip(targets).all(|(&cell, &target)| cell == displaced(target, offset))
+        })
     }
 
     /// Lower bound on the moves from `layout` to the targets, displaced by
@@ -73,7 +78,7 @@ fn by_class(layout: &Layout, classes: usize) -> Vec<Vec<Cell>> {
 
 /// Cheapest assignment of the cells `from` to the equally many cells `to + offset`.
 fn assignment(from: &[Cell], to: &[Cell], offset: Cell) -> u32 {
-    let cost = |a: Cell, b: Cell| fewest_moves(a, std::array::from_fn(|i| b[i] + offset[i]));
+    let cost = |a: Cell, b: Cell| fewest_moves(a, displaced(b, offset));
     match (from, to) {
         ([], _) => 0,
         (&[a], &[b]) => cost(a, b),

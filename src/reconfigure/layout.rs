@@ -10,10 +10,16 @@ use petgraph::unionfind::UnionFind;
 
 use crate::robot::{Cell, Face, Orientation};
 
-/// The cell next to `cell` in the direction of `face`.
+/// The cell next to `cell` in the direction of `face`. Cells of a problem are
+/// bounded (see `refusal`), so that this never overflows.
 pub fn neighbour(cell: Cell, face: Face) -> Cell {
     let step = face.step();
     std::array::from_fn(|i| cell[i] + step[i])
+}
+
+/// A cell moved by so many cells along each axis.
+pub fn displaced(cell: Cell, by: Cell) -> Cell {
+    std::array::from_fn(|i| cell[i] + by[i])
 }
 
 /// A module of some class in a cell.
@@ -64,6 +70,12 @@ impl Layout {
         Self::new(placed)
     }
 
+    /// The layout moved by so many cells along each axis.
+    #[must_use]
+    pub fn displaced(&self, by: Cell) -> Self {
+        Self::new(self.0.iter().map(|p| Placed { cell: displaced(p.cell, by), ..*p }).collect())
+    }
+
     /// Every pair of faces that coincide, in ascending order.
     pub fn touching(&self) -> Vec<Bond> {
         let ahead = [Face::PosX, Face::PosY, Face::PosZ];
@@ -109,6 +121,12 @@ impl Bond {
     /// The two cells that it lies between.
     pub fn cells(self) -> [Cell; 2] {
         [self.cell, neighbour(self.cell, self.face())]
+    }
+
+    /// The bond moved by so many cells along each axis.
+    #[must_use]
+    pub fn displaced(self, by: Cell) -> Self {
+        Self { cell: displaced(self.cell, by), ..self }
     }
 
     /// Whether it is a face of `cell`.

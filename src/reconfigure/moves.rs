@@ -196,16 +196,15 @@ impl Move {
         landing
     }
 
-    /// The pairs of cells that hold each other in the interior of the move,
-    /// with the moving module at `from`.
-    pub fn held(self, layout: &Layout) -> Vec<[Cell; 2]> {
+    /// Where a module would hold this one on its way, as the cell and the side
+    /// of the moving module that faces it: all along its slide, or the
+    /// support of its pivot.
+    pub fn sides(self) -> Vec<(Cell, Face)> {
         match self.motion {
             Motion::Slide { direction } => perpendicular(direction)
-                .flat_map(|side| [neighbour(self.from, side), neighbour(self.to(), side)])
-                .filter(|&cell| layout.is_filled(cell))
-                .map(|cell| [self.from, cell])
+                .flat_map(|side| [self.from, self.to()].map(|cell| (neighbour(cell, side), side)))
                 .collect(),
-            Motion::Pivot { support, .. } => vec![[self.from, neighbour(self.from, support)]],
+            Motion::Pivot { support, .. } => vec![(neighbour(self.from, support), support)],
         }
     }
 

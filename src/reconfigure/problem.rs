@@ -4,15 +4,12 @@
 //!
 //! Knows no search and asks no oracle.
 
-use crate::robot::{Configuration, FaceConnection, Goal, ModuleLoad, Placement, Port};
+use crate::robot::{Cell, Configuration, FaceConnection, Goal, ModuleLoad, Orientation, Placement, Port};
 
 use super::goal::GoalTest;
 use super::layout::{Bond, Layout, Placed};
 use super::moves::Ability;
-use super::refusal::Refusal;
-
-/// Largest coordinate of a cell, so that no arithmetic on cells overflows.
-const LARGEST_COORDINATE: u32 = 1 << 24;
+use super::refusal::{Rejection, check};
 
 /// What makes modules interchangeable: those of one class can swap places
 /// without a difference to geometry, statics or the goal.
@@ -22,12 +19,12 @@ pub struct Class {
     pub module_type: usize,
     /// Whether its modules are held immovably.
     pub fixed: bool,
-    /// The loads on each of its modules; their module index is meaningless.
-    loads: Vec<ModuleLoad>,
+    /// The loads on each of its modules; their module index is always 0.
+    pub loads: Vec<ModuleLoad>,
     /// The one module of the class, where modules are labelled.
-    label: Option<String>,
-    /// Whether the orientation of its modules matters: their centre of mass or
-    /// a point of action is off the centre of the cube.
+    pub label: Option<String>,
+    /// Whether the orientation of its modules matters: a load acts off their
+    /// centre. Cubes themselves are alike in all 24 orientations.
     pub turns: bool,
 }
 
@@ -40,25 +37,23 @@ pub struct Problem {
     layout: Layout,
     bonds: Vec<Bond>,
     goal: GoalTest,
+    connected: bool,
 }
 
 impl Problem {
     /// Prepares a start and a goal.
     ///
     /// # Errors
-    /// Data that no robot can have, or a goal that cannot be compared with the
-    /// start; the first problem found.
-    pub fn new(start: &Configuration, goal: &Goal) -> Result<Self, Refusal> {
-        for configuration in [start, &goal.configuration] {
-            check(configuration)?;
-        }
-        if start.catalogue != goal.configuration.catalogue {
-            return Err(Refusal::CataloguesDiffer);
-        }
+    /// [`Rejection::Refused`] for data that no robot can have or a goal that cannot be
+    /// compared with the start, [`Rejection::Impossible`] when the modules alone prove
+    /// that the goal cannot be reached.
+    pub fn new(start: &Configuration, goal: &Goal) -> Result<Self, Rejection> {
+        check(start, goal)?;
         let (classes, class_of) = classes(start, goal.matching.labelled);
+        let goal = GoalTest::new(start, &class_of, &classes, goal)?;
         let layout = layout(start, &classes, &class_of);
-        let goal = GoalTest::new(start, goal, &classes)?;
-        Ok(Self { layout, bonds: bonds(start), start: start.clone(), classes, class_of, goal })
+        let connected = start.require.connected || goal.requires_connected();
+        Ok(Self { layout, bonds: bonds(start), start: start.clone(), classes, class_of, goal, connected })
     }
 
     /// The start as it was given.
@@ -94,26 +89,30 @@ impl Problem {
         Ability { slide: free && lattice.slide, pivot: free && lattice.pivot, hinge: lattice.hinge.is_some() }
     }
 
-    /// A configuration with these placements and connections, in which the
+    /// Whether all modules must stay connected.
+    pub fn must_stay_connected(&self) -> bool {
+        self.connected
+    }
+
+    /// A placement for every module of the start that represents `layout`: the
     /// modules of each class fill its cells in ascending order.
-    pub fn representative(&self, layout: &Layout, bonds: &[Bond]) -> Configuration {
-        let mut configuration = self.start.clone();
-        for (class, _) in self.classes.iter().enumerate() {
-            let modules = (0..self.class_of.len()).filter(|&m| usize::from(self.class_of[m]) == class);
-            let places = layout.placed().iter().filter(|placed| usize::from(placed.class) == class);
-            for (module, placed) in modules.zip(places) {
-                configuration.modules[module].placement =
-                    Placement { cell: placed.cell, orientation: placed.orientation };
-            }
-        }
-        configuration.connections = bonds.iter().filter_map(|&bond| connection(&configuration, bond)).collect();
-        configuration.connections.sort_unstable();
-        configuration
+    pub fn placements(&self, layout: &Layout) -> Vec<Placement> {
+        let mut next: Vec<_> = (0..self.classes.len()).map(|class| of_class(layout, class)).collect();
+        let place = |&class: &u16| {
+            let placed = next[usize::from(class)].next().expect("a layout of the start's modules");
+            Placement { cell: placed.cell, orientation: placed.orientation }
+        };
+        self.class_of.iter().map(place).collect()
     }
 }
 
+/// The modules of one class, by ascending cell.
+fn of_class(layout: &Layout, class: usize) -> impl Iterator<Item = &Placed> {
+    layout.placed().iter().filter(move |placed| usize::from(placed.class) == class)
+}
+
 /// The module in a cell.
-pub fn module_at(configuration: &Configuration, cell: crate::robot::Cell) -> Option<usize> {
+pub fn module_at(configuration: &Configuration, cell: Cell) -> Option<usize> {
     configuration.modules.iter().position(|module| module.placement.cell == cell)
 }
 
@@ -145,7 +144,7 @@ fn layout(configuration: &Configuration, classes: &[Class], class_of: &[u16]) ->
     let placed = configuration.modules.iter().zip(class_of).map(|(module, &class)| {
         let turns = classes[usize::from(class)].turns;
         let Placement { cell, orientation } = module.placement;
-        Placed { cell, class, orientation: if turns { orientation } else { Default::default() } }
+        Placed { cell, class, orientation: if turns { orientation } else { Orientation::IDENTITY } }
     });
     Layout::new(placed.collect())
 }
@@ -157,13 +156,12 @@ fn classes(start: &Configuration, labelled: bool) -> (Vec<Class>, Vec<u16>) {
     for (index, module) in start.modules.iter().enumerate() {
         let own = start.loads.iter().filter(|load| load.module == index);
         let loads: Vec<ModuleLoad> = own.map(|load| ModuleLoad { module: 0, ..load.clone() }).collect();
-        let com = start.catalogue.module_types[module.module_type].body.com;
-        let off_centre = |load: &ModuleLoad| load.at.is_some_and(|at| at != com);
+        let off_centre = |load: &ModuleLoad| load.at.is_some_and(|at| at.amax() > 0.0);
         let class = Class {
             module_type: module.module_type,
             fixed: module.fixed,
             label: labelled.then(|| module.id.clone()),
-            turns: com.norm() > 0.0 || loads.iter().any(off_centre),
+            turns: loads.iter().any(off_centre),
             loads,
         };
         let known = classes.iter().position(|other| *other == class);
