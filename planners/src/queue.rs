@@ -1,0 +1,67 @@
+//! The open list: a priority queue that breaks ties by order of generation.
+
+use std::cmp::{Ordering, Reverse};
+use std::collections::BinaryHeap;
+
+/// An item on the queue.
+#[derive(Clone, Copy)]
+pub(crate) struct Entry<P, T> {
+    pub priority: P,
+    generation: u64,
+    pub item: T,
+}
+
+/// Items by priority, greatest first, then oldest first.
+pub(crate) struct Queue<P, T> {
+    heap: BinaryHeap<Entry<P, T>>,
+    generation: u64,
+}
+
+impl<P: Ord, T> Queue<P, T> {
+    pub fn new() -> Self {
+        Queue { heap: BinaryHeap::new(), generation: 0 }
+    }
+
+    pub fn push(&mut self, priority: P, item: T) {
+        self.heap.push(Entry { priority, generation: self.generation, item });
+        self.generation += 1;
+    }
+
+    /// Puts back an entry with another priority; its age stays.
+    pub fn reinsert(&mut self, entry: Entry<P, T>) {
+        self.heap.push(entry);
+    }
+
+    pub fn pop(&mut self) -> Option<Entry<P, T>> {
+        self.heap.pop()
+    }
+
+    pub fn peek(&self) -> Option<&Entry<P, T>> {
+        self.heap.peek()
+    }
+
+    /// Approximate memory, in bytes.
+    pub fn bytes(&self) -> usize {
+        self.heap.len() * size_of::<Entry<P, T>>()
+    }
+}
+
+impl<P: Ord, T> Ord for Entry<P, T> {
+    fn cmp(&self, other: &Self) -> Ordering {
+        (&self.priority, Reverse(self.generation)).cmp(&(&other.priority, Reverse(other.generation)))
+    }
+}
+
+impl<P: Ord, T> PartialOrd for Entry<P, T> {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl<P: Ord, T> PartialEq for Entry<P, T> {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+
+impl<P: Ord, T> Eq for Entry<P, T> {}
