@@ -31,14 +31,14 @@ impl Course {
     /// Sliding, the module is held by every face that it overlaps, as far as it
     /// overlaps; pivoting, by the hinge alone.
     pub fn new(placements: Vec<Placement>, bonds: &[Bond], step: Move, pitch: f64) -> Option<Self> {
-        let occupancy = Occupancy::new(placements.iter().copied());
+        let occupancy = Occupancy::of_placements(&placements);
         let module = occupancy.at(step.from)?;
         let others = bonds.iter().filter(|bond| !bond.touches(step.from));
         let mut engaged: Vec<_> = others.filter_map(|&bond| engagement(&occupancy, bond)).collect();
         match step.motion {
-            Motion::Slide { .. } => engaged.extend(step.sides().into_iter().filter_map(|(cell, side)| {
-                Some(face([module, occupancy.at(cell)?], side))
-            })),
+            Motion::Slide { .. } => engaged.extend(
+                step.sides().into_iter().filter_map(|(cell, side)| Some(face([module, occupancy.at(cell)?], side))),
+            ),
             Motion::Pivot { support, towards, .. } => {
                 let parent = occupancy.at(neighbour(step.from, support))?;
                 let edge = edge_centre(step, support, towards, pitch);
@@ -48,11 +48,6 @@ impl Course {
         }
         let start = placements[module].pose(pitch);
         Some(Self { placements, engaged, module, start, motion: motion(step, pitch) })
-    }
-
-    /// What holds the robot together, as far as it overlaps.
-    pub fn engaged(&self) -> &[Engagement] {
-        &self.engaged
     }
 
     /// The state at a phase from 0 to 1.

@@ -16,13 +16,12 @@ pub struct GoalTest {
     /// frame is free, its turns about the vertical, moved to the origin.
     forms: Vec<Form>,
     free: bool,
-    connected: bool,
-    margin: f64,
 }
 
 /// One way to turn the goal.
 #[derive(Clone, Debug)]
 struct Form {
+    layout: Layout,
     bonds: Vec<Bond>,
     targets: Targets,
     bounds: [[i32; 2]; 2],
@@ -59,18 +58,17 @@ impl GoalTest {
         let listed = bonds(&goal.configuration);
         let turns = if free { 4 } else { 1 };
         let forms = (0..turns).map(|turn| Form::new(&layout, &listed, turn, free, &fixed)).collect();
-        let require = &goal.configuration.require;
-        Ok(Self { forms, free, connected: require.connected, margin: require.margin })
+        Ok(Self { forms, free })
     }
 
-    /// Whether the goal asks for all modules to stay connected.
-    pub(super) fn requires_connected(&self) -> bool {
-        self.connected
+    /// The goal's layout; some displacement of it where the frame is free.
+    pub fn layout(&self) -> &Layout {
+        &self.forms[0].layout
     }
 
-    /// The margin that the goal asks for.
-    pub(super) fn required_margin(&self) -> f64 {
-        self.margin
+    /// The connections of [`GoalTest::layout`].
+    pub fn listed(&self) -> &[Bond] {
+        &self.forms[0].bonds
     }
 
     /// Whether the goal may be met anywhere on the ground.
@@ -122,9 +120,8 @@ impl Form {
     fn new(layout: &Layout, listed: &[Bond], turn: usize, free: bool, fixed: &[bool]) -> Self {
         let quarters = (0..turn).fold(Orientation::IDENTITY, |o, _| o.turned(Orientation::quarter_turn(Face::PosZ)));
         let rows = quarters.rows();
-        let turned = |cell: Cell| -> Cell {
-            std::array::from_fn(|i| (0..3).map(|j| i32::from(rows[i][j]) * cell[j]).sum())
-        };
+        let turned =
+            |cell: Cell| -> Cell { std::array::from_fn(|i| (0..3).map(|j| i32::from(rows[i][j]) * cell[j]).sum()) };
         let turned_layout =
             Layout::new(layout.placed().iter().map(|p| Placed { cell: turned(p.cell), ..*p }).collect());
         let corner = bounds(&turned_layout).map(|[low, _]| -low);
@@ -134,7 +131,10 @@ impl Form {
             let cell = turned(bond.cells()[0]);
             Bond::new(cell, quarters.to_world(bond.face())).displaced(offset)
         });
-        Self { bonds: bonds.collect(), bounds: bounds(&layout), targets: Targets::new(&layout, fixed.to_vec()) }
+        let targets = Targets::new(&layout, fixed.to_vec());
+        let mut bonds: Vec<Bond> = bonds.collect();
+        bonds.sort_unstable();
+        Self { bonds, bounds: bounds(&layout), targets, layout }
     }
 }
 
@@ -214,13 +214,7 @@ fn goal_classes(
 }
 
 /// The class of a module that the goal does not hold.
-fn free_class(
-    start: &Configuration,
-    class_of: &[u16],
-    classes: &[Class],
-    goal: &Goal,
-    module: &Module,
-) -> Option<u16> {
+fn free_class(start: &Configuration, class_of: &[u16], classes: &[Class], goal: &Goal, module: &Module) -> Option<u16> {
     let namesake = start.modules.iter().position(|m| m.id == module.id && !m.fixed);
     let loads = namesake.map_or(&[][..], |m| &classes[usize::from(class_of[m])].loads);
     let fits = |class: &Class| {

@@ -151,8 +151,7 @@ impl Move {
             Motion::Slide { direction } => self.slide_supports(layout, direction).next().is_some(),
             Motion::Pivot { support, towards, turn } => {
                 let support = neighbour(self.from, support);
-                layout.is_filled(support)
-                    && (turn == Turn::Half || layout.is_filled(neighbour(support, towards)))
+                layout.is_filled(support) && (turn == Turn::Half || layout.is_filled(neighbour(support, towards)))
             }
         };
         supported && self.room().into_iter().all(|cell| !layout.is_filled(cell))
@@ -180,20 +179,23 @@ impl Move {
             }
     }
 
-    /// The module's own connections after the move, in ascending order.
-    /// `layout` may be the one before or after the move.
+    /// The module's own connections at the beginning of the move, ascending:
+    /// those that it slides along, or its support.
+    pub fn departure(self, layout: &Layout) -> Vec<Bond> {
+        match self.motion {
+            Motion::Slide { direction } => beside(layout, self.from, direction),
+            Motion::Pivot { support, .. } => vec![Bond::new(self.from, support)],
+        }
+    }
+
+    /// The module's own connections after the move, ascending. `layout` may be
+    /// the one before or after it.
     pub fn landing(self, layout: &Layout) -> Vec<Bond> {
-        let to = self.to();
-        let mut landing: Vec<Bond> = match self.motion {
-            Motion::Slide { direction } => perpendicular(direction)
-                .filter(|&side| layout.is_filled(neighbour(to, side)))
-                .map(|side| Bond::new(to, side))
-                .collect(),
-            Motion::Pivot { support, turn: Turn::Quarter, .. } => vec![Bond::new(to, support)],
-            Motion::Pivot { towards, turn: Turn::Half, .. } => vec![Bond::new(to, towards.opposite())],
-        };
-        landing.sort_unstable();
-        landing
+        match self.motion {
+            Motion::Slide { direction } => beside(layout, self.to(), direction),
+            Motion::Pivot { support, turn: Turn::Quarter, .. } => vec![Bond::new(self.to(), support)],
+            Motion::Pivot { towards, turn: Turn::Half, .. } => vec![Bond::new(self.to(), towards.opposite())],
+        }
     }
 
     /// Where a module would hold this one on its way, as the cell and the side
@@ -219,6 +221,14 @@ impl Move {
     }
 }
 
+/// The bonds of a cell with the modules beside it, perpendicular to a direction, ascending.
+fn beside(layout: &Layout, cell: Cell, direction: Face) -> Vec<Bond> {
+    let sides = perpendicular(direction).filter(|&side| layout.is_filled(neighbour(cell, side)));
+    let mut bonds: Vec<Bond> = sides.map(|side| Bond::new(cell, side)).collect();
+    bonds.sort_unstable();
+    bonds
+}
+
 /// Axis of a pivot, as the world direction that it turns right-handed about: it carries `s` to `d`.
 pub fn pivot_axis(support: Face, towards: Face) -> Face {
     let (s, d) = (support.opposite().step(), towards.step());
@@ -232,9 +242,11 @@ pub fn fitting(layout: &Layout, ability: impl Fn(u16) -> Ability) -> Vec<Move> {
     let mut moves = Vec::new();
     for placed in layout.placed() {
         let able = ability(placed.class);
-        let hinged = |support| layout.at(neighbour(placed.cell, support)).map(|at| ability(layout.placed()[at].class).hinge);
+        let hinged =
+            |support| layout.at(neighbour(placed.cell, support)).map(|at| ability(layout.placed()[at].class).hinge);
         let slides = Face::ALL.into_iter().filter(|_| able.slide).map(|direction| Motion::Slide { direction });
-        let supports = Face::ALL.into_iter().filter(|&support| able.pivot && able.hinge && hinged(support) == Some(true));
+        let supports =
+            Face::ALL.into_iter().filter(|&support| able.pivot && able.hinge && hinged(support) == Some(true));
         let pivots = supports.flat_map(|support| {
             perpendicular(support).flat_map(move |towards| {
                 [Turn::Quarter, Turn::Half].map(|turn| Motion::Pivot { support, towards, turn })

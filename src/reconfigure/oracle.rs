@@ -78,7 +78,7 @@ impl<'a> Oracle<'a> {
 
     /// Margin at rest, with these placements and connections.
     pub fn of_state(&self, placements: &[Placement], bonds: &[Bond]) -> Worst {
-        let occupancy = Occupancy::new(placements.iter().copied());
+        let occupancy = Occupancy::of_placements(placements);
         let engaged: Vec<_> = bonds.iter().filter_map(|&bond| engagement(&occupancy, bond)).collect();
         self.solves.fetch_add(1, Ordering::Relaxed);
         self.ask(&Transient { placements, moving: None, engaged: &engaged }, Instant::Rest)

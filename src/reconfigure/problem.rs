@@ -37,7 +37,6 @@ pub struct Problem {
     layout: Layout,
     bonds: Vec<Bond>,
     goal: GoalTest,
-    connected: bool,
 }
 
 impl Problem {
@@ -52,8 +51,7 @@ impl Problem {
         let (classes, class_of) = classes(start, goal.matching.labelled);
         let goal = GoalTest::new(start, &class_of, &classes, goal)?;
         let layout = layout(start, &classes, &class_of);
-        let connected = start.require.connected || goal.requires_connected();
-        Ok(Self { layout, bonds: bonds(start), start: start.clone(), classes, class_of, goal, connected })
+        Ok(Self { layout, bonds: bonds(start), start: start.clone(), classes, class_of, goal })
     }
 
     /// The start as it was given.
@@ -89,9 +87,14 @@ impl Problem {
         Ability { slide: free && lattice.slide, pivot: free && lattice.pivot, hinge: lattice.hinge.is_some() }
     }
 
+    /// Whether the orientation of any module matters.
+    pub fn turns(&self) -> bool {
+        self.classes.iter().any(|class| class.turns)
+    }
+
     /// Whether all modules must stay connected.
     pub fn must_stay_connected(&self) -> bool {
-        self.connected
+        self.start.require.connected
     }
 
     /// A placement for every module of the start that represents `layout`: the
@@ -137,6 +140,16 @@ pub fn bonds(configuration: &Configuration) -> Vec<Bond> {
     bonds.sort_unstable();
     bonds.dedup();
     bonds
+}
+
+/// The cells of a configuration's modules, all of one class.
+pub fn cells(configuration: &Configuration) -> Layout {
+    let placed = configuration.modules.iter().map(|module| Placed {
+        cell: module.placement.cell,
+        class: 0,
+        orientation: Orientation::IDENTITY,
+    });
+    Layout::new(placed.collect())
 }
 
 /// The canonical layout of a configuration whose modules have these classes.
