@@ -6,6 +6,8 @@
 
 mod action;
 pub mod assembly;
+#[cfg(test)]
+mod assembly_tests;
 mod compose;
 mod course;
 mod domain;
@@ -33,3 +35,6 @@ pub use plan::{Bottleneck, Limit, Objective, Outcome, Plan, PlannedAction, Proof
 pub use refusal::{Impossible, Refusal, Which};
 pub use solve::{Event, MARGIN_TOLERANCE, Options, Reduction, solve};
 pub use step::Step;
+
+#[cfg(test)]
+mod tests;

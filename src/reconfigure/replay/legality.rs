@@ -12,14 +12,14 @@ use super::failure::Fault;
 
 /// A legal action: the state after it, and the way of its moving module.
 #[derive(Clone, Debug)]
-pub(super) struct Transition {
+pub struct Transition {
     pub after: Configuration,
     pub path: Option<Path>,
 }
 
 /// The way of a moving module.
 #[derive(Clone, Debug)]
-pub(super) struct Path {
+pub struct Path {
     pub module: usize,
     pub motion: Motion,
     /// What holds the robot together on the way.
@@ -35,7 +35,7 @@ const SLIDE_STEPS: u32 = 32;
 const QUARTER_STEPS: u32 = 30;
 
 /// Where an action leads from a state.
-pub(super) fn transition(before: &Configuration, action: &Action) -> Result<Transition, Fault> {
+pub fn transition(before: &Configuration, action: &Action) -> Result<Transition, Fault> {
     let count = before.modules.len();
     let known = |modules: &[usize]| modules.iter().all(|&m| m < count).then_some(()).ok_or(Fault::UnknownModule);
     match action {

@@ -9,7 +9,7 @@
 mod arrival;
 mod claims;
 mod failure;
-mod legality;
+pub(super) mod legality;
 mod transit;
 
 use crate::robot::{Configuration, Goal};
