@@ -38,6 +38,9 @@ impl<S: Space> Search<'_, S> {
     /// the first is kept: the sorted actions as key drop plans that differ only
     /// in order. A path visits no state twice and ends at its first goal.
     ///
+    /// After [`Search::margin`], the `floor` of its proof gives the alternatives
+    /// to its path.
+    ///
     /// Method: J. Y. Yen, "Finding the k shortest loopless paths in a network",
     /// Management Science 17(11), 1971, in E. L. Lawler's form (Management
     /// Science 18(7), 1972), which splits the paths left into cells that do not

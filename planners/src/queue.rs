@@ -65,3 +65,25 @@ impl<P: Ord, T> PartialEq for Entry<P, T> {
 }
 
 impl<P: Ord, T> Eq for Entry<P, T> {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_greatest_comes_first_and_then_the_oldest() {
+        let mut queue = Queue::new();
+        for number in 0..30 {
+            queue.push(number % 3, number);
+        }
+        let mut first = queue.pop().expect("thirty were pushed");
+        assert_eq!(first.item, 2);
+        first.priority = 1;
+        queue.reinsert(first);
+        let order: Vec<i32> = std::iter::from_fn(|| queue.pop()).map(|entry| entry.item).collect();
+        let twos = (0..30).filter(|number| number % 3 == 2 && *number != 2);
+        let ones = (0..30).filter(|number| number % 3 == 1 || *number == 2);
+        // The one put back is older than all ones but the first.
+        assert_eq!(order, twos.chain(ones).chain((0..30).filter(|number| number % 3 == 0)).collect::<Vec<_>>());
+    }
+}

@@ -38,7 +38,8 @@ impl Default for Options {
 /// Engines called on one `Search` share the explored graph and its certified
 /// widths: nothing is generated twice, and certified twice only if an early
 /// stop left it undecided. All are deterministic as long as no deadline or
-/// cancellation ends them: ties go to what was generated first.
+/// cancellation ends them: ties go to what was generated first. A floor of NaN
+/// is reached by no path.
 pub struct Search<'a, S: Space> {
     pub(crate) graph: Graph<'a, S>,
     pub(crate) monitor: Monitor<'a>,

@@ -105,33 +105,39 @@ impl Widest {
             if let Some(limit) = search.tick(self.bytes()) {
                 return self.end(search, value.width(), Some(limit));
             }
+            let is_goal = search.graph.is_goal(to);
             if !certified {
-                let floor = self.best.map_or(self.floor, |(best, _)| search.tie(best.width()).max(self.floor));
-                let width = search.graph.certify(arrow, floor);
-                self.brackets.insert(width);
-                value = self.value(arrow.from).then(Bottleneck::new(width.lower));
+                value = self.certify(search, arrow);
                 if !self.is_wide_enough(value) {
                     continue;
                 }
-                if search.graph.is_goal(to) && self.best.is_none_or(|(best, _)| value > best) {
+                if is_goal && self.best.is_none_or(|(best, _)| value > best) {
                     self.best = Some((value, arrow));
                     search.monitor.progress.best_width = Some(value.width());
                 }
-                if self.open.peek().is_some_and(|next| next.priority.0 > value) {
-                    head.priority = (value, near);
-                    head.item.certified = true;
+                head.priority = (value, near);
+                head.item.certified = true;
+                if self.open.peek().is_some_and(|next| *next > head) {
                     self.open.reinsert(head);
                     continue;
                 }
             }
-            self.tree.settle(to, value, Some(arrow));
-            if search.graph.is_goal(to) {
-                self.best = Some((value, arrow));
+            if is_goal {
                 return self.end(search, value.width(), None);
             }
+            self.tree.settle(to, value, Some(arrow));
             self.expand(search, to);
         }
         self.end(search, self.floor.next_down(), None)
+    }
+
+    /// Value of a way with its last transition certified.
+    fn certify<S: Space>(&mut self, search: &mut Search<'_, S>, arrow: Arrow) -> Bottleneck {
+        // What is narrower than the best way so far need not be known exactly.
+        let floor = self.best.map_or(self.floor, |(best, _)| search.tie(best.width()).max(self.floor));
+        let width = search.graph.certify(arrow, floor);
+        self.brackets.insert(width);
+        self.value(arrow.from).then(Bottleneck::new(width.lower))
     }
 
     /// Opens all ways on from a closed state.

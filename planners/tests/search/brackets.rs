@@ -67,12 +67,18 @@ proptest! {
             prop_assert!(Some(proof.width_at_most) >= thinkable);
             let least = reference::shortest(&graph, proof.floor, |width| width.upper);
             prop_assert!(least.is_none_or(|cost| proof.cost_at_least <= cost));
+            if let Some(path) = outcome.best() {
+                let surest = reference::widest(&graph, |width| width.lower);
+                prop_assert!(path.width.lower >= proof.floor && Some(proof.floor) <= surest);
+                // Proved or not, both passes run to their end.
+                let cheapest = reference::shortest(&graph, proof.floor, |width| width.lower);
+                prop_assert_eq!(Some(path.cost), cheapest);
+            }
         }
         match outcome {
             Outcome::Solved { found, proof } => {
                 check_path(&graph, &found);
                 prop_assert!(found.width.lower >= search.tie(proof.width_at_most));
-                prop_assert_eq!(Some(found.cost), reference::shortest(&graph, proof.floor, |width| width.lower));
                 prop_assert!(proof.width_optimal && proof.cost_optimal);
             }
             Outcome::OutOfBudget { limit, best, proof } => {

@@ -1,7 +1,5 @@
 //! Small cases, each for one reason.
 
-use std::cell::Cell;
-
 use planners::toy::Toy;
 use planners::{Limit, Options, Outcome, Search, Space, Transition, Width};
 
@@ -102,15 +100,23 @@ fn two_orders_of_one_plan_are_one_plan() {
     assert_eq!(plans(in_any_order), ["xy", "d"]);
 }
 
-/// Counts what the engines ask for; an infinite line of states.
-struct Line {
-    generated: Cell<u32>,
+#[test]
+fn ties_go_to_what_was_generated_first() {
+    let names: Vec<usize> = (0..20).collect();
+    let graph = names.iter().fold(Toy::new(2, 0, &[1]), |graph, &name| graph.arc(0, 1, name, 1, 1.0));
+    let mut search = Search::new(&graph, options());
+    for outcome in [search.widest(0.0), search.shortest(0.0), search.margin(0.0)] {
+        assert_eq!(outcome.solved().map(|path| path.steps[0].action), Some(0));
+    }
+    let all = search.k_best(20, 0.0, <[_]>::to_vec);
+    let listed: Vec<usize> = all.solved().unwrap().iter().map(|path| path.steps[0].action).collect();
+    assert_eq!(listed, names);
 }
 
-// Only one thread asks; the trait wants more for domains that use several.
-struct Shared(std::sync::Mutex<Line>);
+/// An infinite line of states, each of which owns a kilobyte.
+struct Line;
 
-impl Space for Shared {
+impl Space for Line {
     type State = i64;
     type Action = i64;
 
@@ -123,8 +129,6 @@ impl Space for Shared {
     }
 
     fn transitions(&self, &from: &i64) -> Vec<Transition<i64, i64>> {
-        let line = self.0.lock().unwrap();
-        line.generated.set(line.generated.get() + 1);
         [-1, 1].map(|action| Transition { action, to: from + action, cost: 1, width_at_most: 1.0 }).to_vec()
     }
 
@@ -135,13 +139,17 @@ impl Space for Shared {
     fn remaining_cost(&self, state: &i64) -> Option<u32> {
         u32::try_from((10 - state).abs()).ok()
     }
+
+    fn heap_bytes(&self, _: &i64) -> usize {
+        1024
+    }
 }
 
 #[test]
 fn an_infinite_space_is_searched_where_the_estimate_leads() {
-    let line = Shared(std::sync::Mutex::new(Line { generated: Cell::new(0) }));
-    let mut search = Search::new(&line, options());
+    let mut search = Search::new(&Line, options());
     assert_eq!(search.margin(0.0).solved().map(|path| path.cost), Some(10));
-    assert_eq!(search.statistics().certified, 10);
-    assert_eq!(line.0.lock().unwrap().generated.get(), 10, "the second pass generates nothing again");
+    let spent = search.statistics();
+    assert_eq!((spent.certified, spent.generated, spent.states), (10, 20, 12));
+    assert!((12 * 1024..16 * 1024).contains(&spent.bytes), "the states' own memory counts: {}", spent.bytes);
 }

@@ -1,11 +1,14 @@
 //! How much is certified.
 
+use std::collections::HashMap;
+use std::sync::Mutex;
+
 use planners::toy::{Arc, Toy};
-use planners::{Search, Width};
+use planners::{Options, Search, Space, Transition, Width};
 use proptest::prelude::*;
 
 use crate::optimality::options;
-use crate::sample::{Graph, exact};
+use crate::sample::{Graph, blurred, exact};
 
 /// The same graph with every width known as soon as the transition is
 /// generated: what a search without bounds certifies is what it generates.
@@ -13,6 +16,56 @@ fn eager(graph: &Graph) -> Graph {
     let mut graph = graph.clone();
     graph.arcs.iter_mut().flatten().for_each(|arc| arc.width_at_most = arc.width.upper);
     graph
+}
+
+/// What an engine asks of a space.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+enum Question {
+    Transitions(usize),
+    Certify(usize, u8, usize),
+}
+
+/// A graph that counts what it is asked.
+struct Counting<'a> {
+    graph: &'a Graph,
+    asked: Mutex<HashMap<Question, u32>>,
+}
+
+impl<'a> Counting<'a> {
+    fn new(graph: &'a Graph) -> Self {
+        Counting { graph, asked: Mutex::new(HashMap::new()) }
+    }
+
+    fn count(&self, question: Question) {
+        *self.asked.lock().unwrap().entry(question).or_insert(0) += 1;
+    }
+}
+
+impl Space for Counting<'_> {
+    type State = usize;
+    type Action = u8;
+
+    fn start(&self) -> usize {
+        self.graph.start()
+    }
+
+    fn is_goal(&self, state: &usize) -> bool {
+        self.graph.is_goal(state)
+    }
+
+    fn transitions(&self, from: &usize) -> Vec<Transition<usize, u8>> {
+        self.count(Question::Transitions(*from));
+        self.graph.transitions(from)
+    }
+
+    fn certify(&self, from: &usize, action: &u8, to: &usize, floor: f64) -> Width {
+        self.count(Question::Certify(*from, *action, *to));
+        self.graph.certify(from, action, to, floor)
+    }
+
+    fn remaining_cost(&self, state: &usize) -> Option<u32> {
+        self.graph.remaining_cost(state)
+    }
 }
 
 type Engine = fn(&mut Search<'_, Graph>, f64);
@@ -42,11 +95,36 @@ proptest! {
     }
 
     #[test]
-    fn margin_certifies_a_transition_at_most_once(graph in exact(9, 30)) {
-        let mut search = Search::new(&graph, options());
-        search.margin(0.0);
-        prop_assert!(search.statistics().certified <= search.statistics().generated);
+    fn margin_asks_for_everything_at_most_once(graph in blurred(9, 30), tolerance in 0.0..0.9) {
+        let counting = Counting::new(&graph);
+        let mut search = Search::new(&counting, Options { tolerance, ..options() });
+        search.margin(f64::NEG_INFINITY);
+        let (certified, generated) = (search.statistics().certified, search.statistics().generated);
+        prop_assert!(certified <= generated);
+        let asked = counting.asked.lock().unwrap();
+        prop_assert!(asked.values().all(|&times| times == 1), "{:?}", asked);
+        let certifications = asked.keys().filter(|question| matches!(question, Question::Certify(..))).count();
+        prop_assert_eq!(certifications as u64, certified);
     }
+
+    /// What was certified loosely for one floor must not answer for another.
+    #[test]
+    fn a_search_can_be_asked_again(graph in blurred(8, 24), floors in prop::collection::vec(0..10_u32, 1..6)) {
+        let mut search = Search::new(&graph, options());
+        for floor in floors.into_iter().map(f64::from) {
+            let fresh = || Search::new(&graph, options());
+            let (again, first) = (search.shortest(floor), fresh().shortest(floor));
+            prop_assert_eq!(again.best().map(|path| path.cost), first.best().map(|path| path.cost));
+            let (again, first) = (search.widest(floor), fresh().widest(floor));
+            prop_assert_eq!(again.best().map(|path| path.width.lower), first.best().map(|path| path.width.lower));
+            prop_assert_eq!(three_costs(&mut search, floor), three_costs(&mut fresh(), floor));
+        }
+    }
+}
+
+fn three_costs(search: &mut Search<'_, Graph>, floor: f64) -> Option<Vec<u32>> {
+    let list = search.k_best(3, floor, <[u8]>::to_vec);
+    list.best().map(|paths| paths.iter().map(|path| path.cost).collect())
 }
 
 /// An open grid of unequal widths from corner to corner, Manhattan distance as estimate.
