@@ -54,7 +54,8 @@ fn the_bound_never_exceeds_the_distance_and_is_consistent() {
 
 #[test]
 fn one_move_covers_one_step_or_a_diagonal() {
-    for (to, least) in [([0, 0, 0], 0), ([1, 0, 0], 1), ([1, -1, 0], 1), ([1, 1, 1], 2), ([3, 0, 0], 3), ([2, 2, -1], 3)]
+    for (to, least) in
+        [([0, 0, 0], 0), ([1, 0, 0], 1), ([1, -1, 0], 1), ([1, 1, 1], 2), ([3, 0, 0], 3), ([2, 2, -1], 3)]
     {
         assert_eq!(fewest_moves([0; 3], to), least, "to {to:?}");
     }

@@ -20,9 +20,8 @@ use super::{cubes, moves_of, polycube};
 fn all_moves(from: Cell) -> Vec<Move> {
     let slides = Face::ALL.map(|direction| Motion::Slide { direction });
     let pivots = Face::ALL.into_iter().flat_map(|support| {
-        perpendicular(support).flat_map(move |towards| {
-            [Turn::Quarter, Turn::Half].map(|turn| Motion::Pivot { support, towards, turn })
-        })
+        perpendicular(support)
+            .flat_map(move |towards| [Turn::Quarter, Turn::Half].map(|turn| Motion::Pivot { support, towards, turn }))
     });
     slides.into_iter().chain(pivots).map(|motion| Move { from, motion }).collect()
 }
@@ -81,7 +80,8 @@ fn legal_by_definition(configuration: &crate::robot::Configuration) -> BTreeSet<
             for action in pivots.chain([Action::Slide { module, to }]) {
                 let Ok(next) = transition(configuration, &action) else { continue };
                 let path = next.path.unwrap();
-                let solid = |m: usize| Solid::new(configuration.module_type(m).body.shape.clone(), configuration.pose(m));
+                let solid =
+                    |m: usize| Solid::new(configuration.module_type(m).body.shape.clone(), configuration.pose(m));
                 let others = (0..count).filter(|&m| m != module).map(solid).collect();
                 let around = Surroundings { solids: others, ground: None };
                 if first_collision(&solid(module), &path.motion, &around).is_none() {
