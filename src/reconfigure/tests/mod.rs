@@ -2,6 +2,7 @@
 
 mod heuristics;
 mod motions;
+mod planning;
 
 use std::sync::Arc;
 
