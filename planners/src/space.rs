@@ -1,15 +1,35 @@
-//! What a search needs from its domain.
+//! What a search needs from its domain. It does not know what a state is.
 
 use std::hash::Hash;
 
 /// An interval that holds a transition's width, both ends included.
-/// `NEG_INFINITY` means the transition is impossible at any demand.
+///
+/// `NEG_INFINITY` at the upper end means that the transition is impossible at
+/// any demand. Searches rank by `lower` and prove with `upper`. What a domain
+/// returns is made safe before use: a NaN end becomes the infinite end that
+/// claims nothing, crossed ends are swapped, and both are cut to the
+/// transition's [`width_at_most`](Transition::width_at_most).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Width {
     /// Proved lower bound.
     pub lower: f64,
     /// Proved upper bound.
     pub upper: f64,
+}
+
+impl Width {
+    /// A width that is known exactly.
+    pub fn exact(width: f64) -> Self {
+        Width { lower: width, upper: width }
+    }
+
+    /// Width of the path of no transitions: nothing narrows it.
+    pub const UNLIMITED: Width = Width { lower: f64::INFINITY, upper: f64::INFINITY };
+
+    /// Width of this and `next` in series: the smaller of each end.
+    pub fn in_series(self, next: Width) -> Width {
+        Width { lower: self.lower.min(next.lower), upper: self.upper.min(next.upper) }
+    }
 }
 
 /// A transition out of a state.
@@ -19,42 +39,60 @@ pub struct Transition<S, A> {
     pub action: A,
     /// The state that it leads to.
     pub to: S,
-    /// Its cost; transitions of cost 0 are allowed.
+    /// Its cost; transitions of cost 0 are allowed. The cost of a whole path
+    /// must stay below `u32::MAX`, where sums saturate.
     pub cost: u32,
     /// Cheap upper bound on its width, `INFINITY` when nothing is known.
+    /// The tighter it is, the fewer transitions are certified.
     pub width_at_most: f64,
 }
 
 /// An implicit weighted graph with expensive widths.
 ///
 /// All methods must be pure: the same arguments give the same answer, in the
-/// same order, on every thread.
+/// same order, on every thread. The engines call them from one thread; a domain
+/// that wants parallelism uses threads inside [`certify`](Space::certify).
+///
+/// An engine keeps the transitions of every state that it expands, and their
+/// certified widths, so a domain needs no cache against repeated calls: for one
+/// state `transitions` is called at most once, and `certify` is called again
+/// for one transition only if an early stop below a high `floor` left it
+/// undecided at a lower one.
 pub trait Space: Sync {
     /// A node. Equal states are the same node.
     type State: Clone + Eq + Hash + Send + Sync;
     /// What a transition does, for the plan.
     type Action: Clone + Send + Sync;
 
-    /// Where the search begins.
+    /// Where the search begins. Whether it is admissible is the caller's
+    /// concern: the path of no transitions has infinite width.
     fn start(&self) -> Self::State;
 
-    /// Whether a state is a goal.
+    /// Whether a state is a goal. Paths end at the first goal that they meet.
     fn is_goal(&self, state: &Self::State) -> bool;
 
-    /// Transitions out of a state, in a fixed order.
+    /// Transitions out of a state, in a fixed order, which breaks ties.
     fn transitions(&self, from: &Self::State) -> Vec<Transition<Self::State, Self::Action>>;
 
     /// Certifies the width of a transition. Below `floor` it may stop as soon
     /// as `upper < floor` is proved; at or above it the interval is as tight as
-    /// the domain can make it.
+    /// the domain can make it. `floor` is `NEG_INFINITY` when any width is of use.
     fn certify(&self, from: &Self::State, action: &Self::Action, to: &Self::State, floor: f64) -> Width;
 
     /// Admissible lower bound on the cost from `state` to a goal; `None` when
-    /// it is proved that no goal can be reached from it.
+    /// it is proved that no goal can be reached from it. It may be
+    /// inconsistent. At a goal it is taken to be 0 without asking.
     fn remaining_cost(&self, state: &Self::State) -> Option<u32>;
 
     /// Proved upper bound on the width of any path from start to goal.
     fn width_at_most(&self) -> f64 {
         f64::INFINITY
+    }
+
+    /// Approximate heap memory that `state` owns beyond its `size_of`, in
+    /// bytes, for the memory limit.
+    fn heap_bytes(&self, state: &Self::State) -> usize {
+        let _ = state;
+        0
     }
 }

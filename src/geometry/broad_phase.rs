@@ -5,17 +5,28 @@ use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy};
 
 use super::solid::Solid;
 
-/// Pairs of solids whose bounding boxes come within `margin` in m of each
-/// other, as indices, smaller first, sorted. In far less than quadratic time.
-pub fn touching_candidates(solids: &[Solid], margin: f64) -> Vec<[usize; 2]> {
-    let boxes: Vec<Aabb> = solids.iter().map(|solid| bounding_box(solid, margin / 2.0)).collect();
-    let tree = Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes);
-    let mut pairs = Vec::new();
-    for (i, bounds) in boxes.iter().enumerate() {
-        pairs.extend(tree.intersect_aabb(bounds).map(|j| j as usize).filter(|&j| i < j).map(|j| [i, j]));
+/// Immovable solids, prepared for asking which of them are near another one.
+#[derive(Clone, Debug)]
+pub struct BroadPhase {
+    solids: Vec<Solid>,
+    tree: Bvh,
+}
+
+impl BroadPhase {
+    /// Prepares these solids, in a time that grows hardly faster than their number.
+    pub fn new(solids: Vec<Solid>) -> Self {
+        let boxes: Vec<Aabb> = solids.iter().map(|solid| bounding_box(solid, 0.0)).collect();
+        Self { tree: Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes), solids }
     }
-    pairs.sort_unstable();
-    pairs
+
+    /// The solids whose bounding boxes come within `margin` in m of another's,
+    /// with their indices, in order. A superset of those within `margin` of it.
+    pub fn near(&self, solid: &Solid, margin: f64) -> Vec<(usize, &Solid)> {
+        let mut found: Vec<usize> =
+            self.tree.intersect_aabb(&bounding_box(solid, margin)).map(|index| index as usize).collect();
+        found.sort_unstable();
+        found.into_iter().map(|index| (index, &self.solids[index])).collect()
+    }
 }
 
 fn bounding_box(solid: &Solid, margin: f64) -> Aabb {

@@ -5,10 +5,7 @@ use crate::spatial::Vec3;
 use super::polygon::{Point2, clip, convex_hull, crossing};
 use super::separation::separations;
 use super::solid::Solid;
-
-/// Sine of the angle up to which two contact normals count as one. Solids
-/// of size h whose faces are less parallel than TOUCH touch in an edge instead.
-const SAME_NORMAL: f64 = 1e-4;
+use super::tolerances::SAME_NORMAL;
 
 /// Where two solids touch: the corners of the touching area.
 #[derive(Clone, Debug, PartialEq)]
@@ -57,7 +54,8 @@ pub fn contact(a: &Solid, b: &Solid, tolerance: f64) -> Option<ContactPatch> {
 pub fn ground_contact(solid: &Solid, height: f64, tolerance: f64) -> Option<ContactPatch> {
     let vertices = solid.vertices();
     let lowest = vertices.iter().map(|p| p.z).fold(f64::INFINITY, f64::min);
-    if !((lowest - height).abs() <= tolerance) {
+    let touches = (lowest - height).abs() <= tolerance;
+    if !touches {
         return None;
     }
     let near = vertices.into_iter().filter(|p| p.z <= height + tolerance);

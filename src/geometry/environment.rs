@@ -2,15 +2,16 @@
 
 use crate::robot::{Configuration, Fault, Part, Problem};
 
-use super::SKIN;
+use super::broad_phase::BroadPhase;
 use super::separation::overlap;
 use super::solid::Solid;
+use super::tolerances::SKIN;
 
 /// Modules below the ground or inside obstacles, by module. Completes
 /// [`Configuration::problems`], of which there must be none.
 pub fn environment_problems(configuration: &Configuration) -> Vec<Problem> {
     let environment = &configuration.environment;
-    let obstacles: Vec<_> = environment.obstacles.iter().map(Solid::from).collect();
+    let obstacles = BroadPhase::new(environment.obstacles.iter().map(Solid::from).collect());
     let mut problems = Vec::new();
     for module in 0..configuration.modules.len() {
         let shape = configuration.module_type(module).body.shape.clone();
@@ -22,7 +23,7 @@ pub fn environment_problems(configuration: &Configuration) -> Vec<Problem> {
         {
             add(Fault::BelowGround);
         }
-        for (obstacle, other) in obstacles.iter().enumerate() {
+        for (obstacle, other) in obstacles.near(&solid, 0.0) {
             if overlap(&solid, other, skin) {
                 add(Fault::InsideObstacle { obstacle });
             }

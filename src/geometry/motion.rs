@@ -40,9 +40,10 @@ impl Motion {
         self.at(phase) * start
     }
 
-    /// By how much the phase may rise from that at which points of the body are
-    /// at `points`, until one of them has moved by `gap` in m, at least 0, against
-    /// `normal` (unit). Exact but for rounding; infinite when none ever does.
+    /// By how much the phase may rise from that at which corners of the body are
+    /// at `points`, until one of them has gone `gap` in m, at least 0, beyond
+    /// where the last of them is now against `normal` (unit). Exact but for
+    /// rounding; infinite when none ever does.
     pub(super) fn free_advance(&self, points: &[Vec3], normal: &Vec3, gap: f64) -> f64 {
         match self {
             Self::Translation { by } => {
@@ -51,7 +52,8 @@ impl Motion {
             }
             Self::Rotation { centre, axis, angle } => {
                 let axis = axis.into_inner() * angle.signum();
-                let free = |p: &Vec3| free_angle(&(p - centre), &axis, normal, gap);
+                let last = points.iter().map(|p| normal.dot(p)).fold(f64::INFINITY, f64::min);
+                let free = |p: &Vec3| free_angle(&(p - centre), &axis, normal, normal.dot(p) - last + gap);
                 points.iter().map(free).fold(f64::INFINITY, f64::min) / angle.abs()
             }
         }

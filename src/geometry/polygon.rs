@@ -68,7 +68,8 @@ pub(super) fn crossing(a: [Point2; 2], b: [Point2; 2], tolerance: f64) -> Option
     let (along_a, along_b) = (a[1] - a[0], b[1] - b[0]);
     let (length_a, length_b) = (along_a.norm(), along_b.norm());
     let turn = along_a.perp(&along_b);
-    if !(turn.abs() > tolerance * length_a.min(length_b)) {
+    let parallel = turn.abs() <= tolerance * length_a.min(length_b);
+    if parallel {
         return None;
     }
     let share_a = (b[0] - a[0]).perp(&along_b) / turn;

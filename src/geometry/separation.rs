@@ -8,10 +8,7 @@
 use crate::spatial::Vec3;
 
 use super::solid::Solid;
-
-/// Squared sine of the angle below which two edges count as parallel: their
-/// cross product then gives no direction that the faces do not give.
-const PARALLEL: f64 = 1e-16;
+use super::tolerances::PARALLEL;
 
 /// A direction and the gap along it.
 #[derive(Clone, Copy, Debug)]

@@ -2,18 +2,10 @@
 
 use nalgebra::Vector3;
 
-use super::SKIN;
 use super::motion::Motion;
 use super::separation::separations;
 use super::solid::Solid;
-
-/// Gap, relative to the size of the moving solid, below which its shrunk
-/// copy has arrived at an obstacle: a thousandth of the skin that it was shrunk by.
-const ARRIVED: f64 = 1e-7;
-
-/// Steps after which a solid that still scrapes along an obstacle within
-/// [`ARRIVED`] counts as colliding. Sweeps of cubes among cubes take fewer than 20.
-const MAX_STEPS: usize = 10_000;
+use super::tolerances::{ARRIVED, MAX_STEPS, SKIN};
 
 /// What a moving solid may hit.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -25,7 +17,7 @@ pub struct Surroundings {
 }
 
 /// Smallest phase in 0 to 1 at which `solid`, displaced by `motion` from its own pose, hits
-/// something, or `None` when the way is free.
+/// something, or `None` when the way is free. All data must be finite.
 ///
 /// # Guarantees
 /// With `s` = [`SKIN`] times the half of the solid's largest extent:
@@ -36,7 +28,7 @@ pub struct Surroundings {
 /// So solids that touch, slide along each other or part are free.
 ///
 /// Conservative advancement (B. Mirtich: "Impulse-based dynamic simulation of
-/// rigid body systems", 1996, section 2.3) of the solid with its faces moved
+/// rigid body systems", 1996) of the solid with its faces moved
 /// inwards by `s`. Where the original steps by the distance over the greatest
 /// speed, each step here goes as far as *no corner can close the gap along one
 /// of the separating directions*, which is exact for the direction. A face that
@@ -58,7 +50,7 @@ pub fn first_collision(solid: &Solid, motion: &Motion, surroundings: &Surroundin
             first = first.min(phase);
         }
     }
-    (!(first > 1.0)).then_some(first)
+    (first <= 1.0).then_some(first)
 }
 
 /// First phase up to `until` at which the shrunk solid arrives at an obstacle.

@@ -5,7 +5,7 @@
 
 use nalgebra::{Matrix3, Rotation3, Translation3};
 
-use crate::geometry::{ContactPatch, Solid, TOUCH, contact, ground_contact};
+use crate::geometry::{BroadPhase, ContactPatch, Solid, TOUCH, contact, ground_contact};
 use crate::robot::{Configuration, Face, FaceConnection, Occupancy, Placement};
 use crate::spatial::{Pose, Rotation, Vec3};
 use crate::statics::{Anchor, Body, Connection, Connector, Contact, Load, Structure};
@@ -108,7 +108,7 @@ pub struct Assembler<'a> {
     connectors: Vec<Connector>,
     /// How two module types meet, by first times the number of types plus second.
     surfaces: Vec<Surface>,
-    obstacles: Vec<Solid>,
+    obstacles: BroadPhase,
 }
 
 /// The structure of a configuration as it stands.
@@ -134,15 +134,21 @@ impl<'a> Assembler<'a> {
             pitch,
             connectors: catalogue.connectors.iter().map(|c| full_face(c, pitch)).collect(),
             surfaces,
-            obstacles: configuration.environment.obstacles.iter().map(Solid::from).collect(),
+            obstacles: BroadPhase::new(configuration.environment.obstacles.iter().map(Solid::from).collect()),
         }
     }
 
-    /// The structure of a state. Engagements that hold nothing are left out:
-    /// faces without overlap, or whose connectors do not fit; hinges of modules
-    /// that have none. A connection of the configuration's kind is at the centre of
-    /// the overlap, with z from parent to child and x along the world axis that
-    /// follows the normal's in the order x, y, z, x.
+    /// The structure of a state: a body for each module, a connection for each
+    /// engagement, and contacts wherever else something touches.
+    ///
+    /// The frame of a face's connection is at the centre of the overlap, z from
+    /// parent to child, x along the world axis after the normal's (in the order x,
+    /// y, z, x), whatever the modules' orientations. A partly overlapped face holds with its
+    /// share of the connector's strength and limits. Engagements that hold nothing are left out:
+    /// faces without overlap or whose connectors do not fit, hinges of modules that have none.
+    ///
+    /// Two fixed modules carry no contact between them, nor does a fixed module
+    /// with its environment.
     pub fn assemble(&self, state: &Transient) -> Assembly {
         let mut assembly = Assembly {
             structure: Structure {
@@ -267,7 +273,7 @@ impl<'a> Assembler<'a> {
             {
                 add_contacts(assembly, module, Touched::Ground, ground.friction, patch);
             }
-            for (index, obstacle) in self.obstacles.iter().enumerate() {
+            for (index, obstacle) in self.obstacles.near(&solid, tolerance) {
                 if let Some(patch) = contact(&solid, obstacle, tolerance) {
                     let friction = self.configuration.environment.obstacles[index].friction;
                     add_contacts(assembly, module, Touched::Obstacle(index), friction, patch);

@@ -1,4 +1,42 @@
 //! Actions, transient states, and the search space of a robot.
+//!
+//! From a start and a goal to plans whose every transient state is proved stable
+//! ([`solve`]), and from a plan back to a verdict on it ([`replay`]). Knows robots,
+//! statics, geometry and search engines; knows no files and never prints.
 
+mod action;
 pub mod assembly;
+#[cfg(test)]
+mod assembly_laws;
+#[cfg(test)]
+mod assembly_tests;
+mod compose;
+mod course;
+mod domain;
+mod goal;
+mod heuristic;
+mod layout;
+mod moves;
+mod oracle;
+mod plan;
+mod primitive;
+mod problem;
+mod refusal;
+pub mod replay;
+mod sampling;
+mod saturated;
+mod solve;
+mod step;
 mod surface;
+mod trace;
+
+pub use action::Action;
+pub use layout::{Bond, Layout, Placed};
+pub use moves::{Ability, Motion, Move, Turn, fitting};
+pub use plan::{Bottleneck, Limit, Objective, Outcome, Plan, PlannedAction, Proof, Report, Statistics};
+pub use refusal::{Impossible, Refusal, Which};
+pub use solve::{Event, MARGIN_TOLERANCE, Options, Reduction, solve};
+pub use step::Step;
+
+#[cfg(test)]
+mod tests;

@@ -69,7 +69,7 @@ impl Catalogue {
     /// The connector that holds two faces together, of modules of these types:
     /// of the two faces' connectors the one of smaller strength (the first
     /// type's if equal), as an index into [`Catalogue::connectors`]. `None`
-    /// when their models differ, so that they do not fit.
+    /// when their models differ, so that they do not fit. The catalogue must be sound.
     pub fn face_connector(&self, first: usize, second: usize) -> Option<usize> {
         let face = |module_type: usize| self.module_types[module_type].lattice.face;
         let (a, b) = (face(first), face(second));

@@ -13,6 +13,8 @@ mod configuration_check;
 mod lattice;
 mod occupancy;
 mod problem;
+#[cfg(test)]
+mod tests;
 
 pub use built_in::BUILT_IN;
 pub use catalogue::{BodyType, Catalogue, LatticeType, ModuleType, Shape};

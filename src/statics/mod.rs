@@ -1,27 +1,46 @@
 //! The stability oracle: structure in, verdict and bracket out.
+//!
+//! Read in this order: [`Structure`] and [`Connector`] are the question,
+//! [`Assessment`] is the answer, [`assess`] the way from one to the other:
+//!
+//! 1. `blocks` cuts the structure where a wrench is known from balance, `loads`
+//!    lumps what hangs there;
+//! 2. `closed_form` answers for bridges, with the connectors' `demand`;
+//! 3. `program` states every other block as a second-order cone program and
+//!    `conic` hands it to the solver;
+//! 4. `bracket` proves bounds from the fields that come back, after `balance`
+//!    has made the wrenches balance; `collapse` proves that no strength helps.
+//!
+//! The only module that names `clarabel`. It knows nothing of robots, shapes,
+//! files or plans.
 
+mod assess;
 mod assessment;
+mod balance;
+mod blocks;
+mod bracket;
+mod closed_form;
+mod clusters;
+mod collapse;
+mod conic;
 mod connector;
+mod demand;
+mod frame;
+mod hull;
+mod loads;
+mod part;
+mod patch;
+mod program;
+mod respect;
+mod scales;
+mod second_order;
+mod solve_block;
 mod structure;
+mod tolerances;
+mod validate;
 
+pub use assess::assess;
 pub use assessment::{Assessment, Bracket, ConnectionState, LeftOut, Question, Verdict};
 pub use connector::{Connector, Model};
 pub use structure::{Anchor, Body, Connection, Contact, Load, Structure};
-
-/// What is wrong with a structure that cannot be assessed.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct InvalidStructure {
-    /// Where, e.g. `bodies[3].mass`.
-    pub place: String,
-    /// What is wrong there.
-    pub problem: String,
-}
-
-/// Finds the utilisation of `structure` as a bracket, and all that follows from it.
-///
-/// # Errors
-/// Non-finite or out-of-range data, or indices that point nowhere; all of them at once.
-pub fn assess(structure: &Structure, question: Question) -> Result<Assessment, Vec<InvalidStructure>> {
-    let _ = (structure, question);
-    unimplemented!("being written")
-}
+pub use validate::{InvalidStructure, validate};

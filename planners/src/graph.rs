@@ -1,0 +1,188 @@
+//! The part of the implicit graph that has been explored: states, transitions
+//! of the expanded ones, and certified widths. It does not know any search.
+
+use crate::registry::{Registry, StateId};
+use crate::space::{Space, Width};
+
+/// Number of the start.
+pub(crate) const START: StateId = 0;
+
+/// Cost to a goal of a state that cannot reach one.
+pub(crate) const DEAD_END: u32 = u32::MAX;
+
+/// A transition, by its source and its place among the source's transitions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Arrow {
+    pub from: StateId,
+    pub index: u32,
+}
+
+/// What is known of a transition.
+pub(crate) struct Edge<A> {
+    pub action: A,
+    pub to: StateId,
+    pub cost: u32,
+    /// Holds the width; before certification `[-inf, cheap bound]`.
+    pub width: Width,
+    /// The interval is as tight as the domain can make it.
+    tight: bool,
+}
+
+impl<A> Edge<A> {
+    /// Whether certifying again at `floor` could teach anything.
+    fn is_decided(&self, floor: f64) -> bool {
+        self.tight || self.width.upper < floor
+    }
+}
+
+/// Transitions out of a state, once it is expanded.
+type Edges<A> = Option<Box<[Edge<A>]>>;
+
+/// The explored part of a space.
+pub(crate) struct Graph<'a, S: Space> {
+    space: &'a S,
+    registry: Registry<S::State>,
+    is_goal: Vec<bool>,
+    remaining: Vec<u32>,
+    edges: Vec<Edges<S::Action>>,
+    heap_bytes: usize,
+    pub generated: u64,
+    pub certified: u64,
+}
+
+impl<'a, S: Space> Graph<'a, S> {
+    pub fn new(space: &'a S) -> Self {
+        let mut graph = Graph {
+            space,
+            registry: Registry::new(),
+            is_goal: Vec::new(),
+            remaining: Vec::new(),
+            edges: Vec::new(),
+            heap_bytes: 0,
+            generated: 0,
+            certified: 0,
+        };
+        graph.intern(space.start());
+        graph
+    }
+
+    pub fn state(&self, id: StateId) -> &S::State {
+        self.registry.state(id)
+    }
+
+    pub fn is_goal(&self, id: StateId) -> bool {
+        self.is_goal[id as usize]
+    }
+
+    /// Admissible lower bound on the cost to a goal, or [`DEAD_END`].
+    pub fn remaining(&self, id: StateId) -> u32 {
+        self.remaining[id as usize]
+    }
+
+    /// Upper bound on the width of any path, `INFINITY` when nothing is known.
+    pub fn cap(&self) -> f64 {
+        upper_or_unknown(self.space.width_at_most())
+    }
+
+    pub fn edge(&self, arrow: Arrow) -> &Edge<S::Action> {
+        &self.successors(arrow.from)[arrow.index as usize]
+    }
+
+    /// Transitions out of a state that has been expanded.
+    pub fn successors(&self, from: StateId) -> &[Edge<S::Action>] {
+        self.edges[from as usize].as_ref().expect("arrows leave expanded states")
+    }
+
+    /// Generates the transitions out of a state, once.
+    pub fn expand(&mut self, from: StateId) {
+        if self.edges[from as usize].is_none() {
+            let transitions = self.space.transitions(self.registry.state(from));
+            let edges: Box<[_]> = transitions
+                .into_iter()
+                .map(|transition| Edge {
+                    action: transition.action,
+                    to: self.intern(transition.to),
+                    cost: transition.cost,
+                    width: Width { lower: f64::NEG_INFINITY, upper: upper_or_unknown(transition.width_at_most) },
+                    tight: false,
+                })
+                .collect();
+            self.generated += edges.len() as u64;
+            self.heap_bytes += size_of_val(&*edges);
+            self.edges[from as usize] = Some(edges);
+        }
+    }
+
+    /// Width of a transition, good enough to compare with `floor`.
+    pub fn certify(&mut self, arrow: Arrow, floor: f64) -> Width {
+        let edge = self.edge(arrow);
+        if edge.is_decided(floor) {
+            return edge.width;
+        }
+        let (from, to) = (self.registry.state(arrow.from), self.registry.state(edge.to));
+        let answer = self.space.certify(from, &edge.action, to, floor);
+        self.certified += 1;
+        let edges = self.edges[arrow.from as usize].as_mut().expect("arrows leave expanded states");
+        let edge = &mut edges[arrow.index as usize];
+        edge.width = trusted(answer, edge.width.upper);
+        edge.tight = edge.width.upper >= floor;
+        edge.width
+    }
+
+    pub fn states(&self) -> usize {
+        self.registry.len()
+    }
+
+    /// Approximate memory, in bytes.
+    pub fn bytes(&self) -> usize {
+        let columns = size_of::<bool>() + size_of::<u32>() + size_of::<Edges<S::Action>>();
+        self.heap_bytes + self.states() * (Registry::<S::State>::bytes_per_state() + columns)
+    }
+
+    fn intern(&mut self, state: S::State) -> StateId {
+        let (id, is_new) = self.registry.insert(state);
+        if is_new {
+            let state = self.registry.state(id);
+            let is_goal = self.space.is_goal(state);
+            let remaining = if is_goal { 0 } else { self.space.remaining_cost(state).unwrap_or(DEAD_END) };
+            self.heap_bytes += self.space.heap_bytes(state);
+            self.is_goal.push(is_goal);
+            self.remaining.push(remaining);
+            self.edges.push(None);
+        }
+        id
+    }
+}
+
+/// An upper bound, where NaN claims nothing.
+fn upper_or_unknown(width: f64) -> f64 {
+    if width.is_nan() { f64::INFINITY } else { width }
+}
+
+/// An interval whose ends are in order, numbers, and at most `bound`.
+///
+/// Rounding may cross the ends or lift them over an earlier bound. The smaller
+/// end then counts as the lower one: a search may lose a path to rounding, but
+/// must never promise a width that was not proved.
+fn trusted(width: Width, bound: f64) -> Width {
+    let lower = if width.lower.is_nan() { f64::NEG_INFINITY } else { width.lower };
+    let upper = upper_or_unknown(width.upper);
+    Width { lower: lower.min(upper).min(bound), upper: upper.max(lower).min(bound) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn intervals_are_made_safe() {
+        let infinity = f64::INFINITY;
+        let width = |lower, upper| Width { lower, upper };
+        assert_eq!(trusted(width(1.0, 2.0), infinity), width(1.0, 2.0));
+        assert_eq!(trusted(width(2.0, 1.0), infinity), width(1.0, 2.0), "crossed");
+        assert_eq!(trusted(width(1.0, 3.0), 2.0), width(1.0, 2.0), "cut");
+        assert_eq!(trusted(width(2.5, 3.0), 2.0), width(2.0, 2.0), "cut on both sides");
+        assert_eq!(trusted(width(f64::NAN, 3.0), infinity), width(-infinity, 3.0));
+        assert_eq!(trusted(width(1.0, f64::NAN), infinity), width(1.0, infinity));
+    }
+}

@@ -1,0 +1,152 @@
+//! A search over one space: what its engines share.
+
+use crate::algebra::Additive;
+use crate::budget::{Budget, Limit, Statistics};
+use crate::graph::{Arrow, Graph, START};
+use crate::outcome::{Outcome, Path, Proof, Step};
+use crate::progress::{Monitor, Progress};
+use crate::space::Space;
+use crate::tree::Tree;
+
+/// A path of a space.
+pub type PathOf<S> = Path<<S as Space>::State, <S as Space>::Action>;
+
+/// How to search.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Two widths `a >= b` are equally good if `a - b <= tolerance * max(1, |a|)`.
+    /// It has to cover the intervals that certification leaves: where a bound
+    /// cannot be brought that close, the outcome is [`Limit::Precision`].
+    /// Below 1, 0 for exact widths.
+    pub tolerance: f64,
+    /// What may be spent, by all calls on one [`Search`] together.
+    pub budget: Budget,
+    /// A progress report is due after so many queue entries were decided.
+    pub report_every: u64,
+}
+
+impl Default for Options {
+    /// Unlimited, with a report every 32 decisions and a tolerance of 1e-6: no
+    /// strength is known to more digits than that.
+    fn default() -> Self {
+        Options { tolerance: 1e-6, budget: Budget::default(), report_every: 32 }
+    }
+}
+
+/// Search over one space.
+///
+/// Engines called on one `Search` share the explored graph and its certified
+/// widths: nothing is generated twice, and certified twice only if an early
+/// stop left it undecided. All are deterministic as long as no deadline or
+/// cancellation ends them: ties go to what was generated first. A floor of NaN
+/// is reached by no path.
+pub struct Search<'a, S: Space> {
+    pub(crate) graph: Graph<'a, S>,
+    pub(crate) monitor: Monitor<'a>,
+    /// Labels of the shortest-path engine, kept to reuse the memory.
+    pub(crate) tree: Tree<Additive>,
+    tolerance: f64,
+}
+
+impl<'a, S: Space> Search<'a, S> {
+    /// A search that has explored only the start.
+    pub fn new(space: &'a S, options: Options) -> Self {
+        Search {
+            graph: Graph::new(space),
+            monitor: Monitor::new(options.budget, options.report_every.max(1)),
+            tree: Tree::new(),
+            tolerance: options.tolerance,
+        }
+    }
+
+    /// Has `callback` called with progress: at a fixed rate, and after every pass.
+    pub fn on_progress(mut self, callback: &'a mut dyn FnMut(&Progress)) -> Self {
+        self.monitor.on_progress(callback);
+        self
+    }
+
+    /// What has been spent so far.
+    pub fn statistics(&self) -> Statistics {
+        self.monitor.progress.statistics
+    }
+
+    /// The smallest width that counts as equal to `width`, by [`Options::tolerance`].
+    pub fn tie(&self, width: f64) -> f64 {
+        if width.is_finite() { width - self.tolerance * width.abs().max(1.0) } else { width }
+    }
+
+    /// Books what has been done, with the memory of queues and labels.
+    pub(crate) fn book(&mut self, open_bytes: usize) {
+        let statistics = &mut self.monitor.progress.statistics;
+        statistics.generated = self.graph.generated;
+        statistics.certified = self.graph.certified;
+        statistics.states = self.graph.states();
+        statistics.bytes = statistics.bytes.max(self.graph.bytes() + open_bytes);
+    }
+
+    /// Books one more decision, and reports if it is time; says which limit is exceeded.
+    pub(crate) fn tick(&mut self, open_bytes: usize) -> Option<Limit> {
+        self.book(open_bytes);
+        self.monitor.tick()
+    }
+
+    /// Starts the books of a new question.
+    pub(crate) fn begin(&mut self) {
+        self.monitor.begin(self.graph.cap(), self.graph.remaining(START));
+    }
+
+    /// The path that a sequence of certified transitions makes.
+    pub(crate) fn path(&self, arrows: &[Arrow]) -> PathOf<S> {
+        let step = |&arrow: &Arrow| {
+            let edge = self.graph.edge(arrow);
+            Step {
+                action: edge.action.clone(),
+                to: self.graph.state(edge.to).clone(),
+                cost: edge.cost,
+                width: edge.width,
+            }
+        };
+        Path::new(arrows.iter().map(step).collect())
+    }
+
+    /// What the bounds prove about a path, or about nothing found.
+    pub(crate) fn proof(&self, found: Option<&PathOf<S>>, floor: f64, bounds: Bounds) -> Proof {
+        let Bounds { width_at_most, cost_at_least } = bounds;
+        Proof {
+            width_at_most,
+            width_optimal: found.is_some_and(|path| path.width.lower >= self.tie(width_at_most)),
+            floor,
+            cost_at_least,
+            cost_optimal: found.is_some_and(|path| path.cost <= cost_at_least),
+        }
+    }
+
+    /// Reads how a search ended: without a limit it proved what it found, or
+    /// that there is nothing to find.
+    pub(crate) fn conclude(
+        &self,
+        best: Option<PathOf<S>>,
+        limit: Option<Limit>,
+        floor: f64,
+        bounds: Bounds,
+    ) -> Outcome<PathOf<S>> {
+        let proof = self.proof(best.as_ref(), floor, bounds);
+        match (best, limit) {
+            (best, Some(limit)) => Outcome::OutOfBudget { limit, best, proof },
+            (Some(found), None) => Outcome::Solved { found, proof },
+            (None, None) => Outcome::Impossible,
+        }
+    }
+}
+
+/// What holds for all paths.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Bounds {
+    pub width_at_most: f64,
+    pub cost_at_least: u32,
+}
+
+/// `NEG_INFINITY` is never wide enough: such a transition is impossible.
+pub(crate) fn is_wide_enough(width: f64, floor: f64) -> bool {
+    width >= floor && width > f64::NEG_INFINITY
+}

@@ -1,0 +1,97 @@
+//! Explicit graphs as spaces, for tests, examples and comparisons.
+
+use crate::space::{Space, Transition, Width};
+
+/// A transition of a [`Toy`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Arc<A> {
+    /// What is done.
+    pub action: A,
+    /// The node that it leads to.
+    pub to: usize,
+    /// Its cost.
+    pub cost: u32,
+    /// What [`Space::transitions`] says about its width.
+    pub width_at_most: f64,
+    /// What [`Space::certify`] says about its width.
+    pub width: Width,
+}
+
+/// A graph with everything written down. Nodes are numbers from 0.
+#[derive(Clone, Debug)]
+pub struct Toy<A> {
+    /// Where searches begin.
+    pub start: usize,
+    /// Which nodes are goals.
+    pub is_goal: Vec<bool>,
+    /// Transitions out of each node.
+    pub arcs: Vec<Vec<Arc<A>>>,
+    /// The heuristic: what [`Space::remaining_cost`] says about each node.
+    pub remaining: Vec<Option<u32>>,
+    /// What [`Space::width_at_most`] says.
+    pub width_at_most: f64,
+}
+
+impl<A> Toy<A> {
+    /// A graph without transitions, with a blind heuristic and no bounds.
+    pub fn new(nodes: usize, start: usize, goals: &[usize]) -> Self {
+        Toy {
+            start,
+            is_goal: (0..nodes).map(|node| goals.contains(&node)).collect(),
+            arcs: (0..nodes).map(|_| Vec::new()).collect(),
+            remaining: vec![Some(0); nodes],
+            width_at_most: f64::INFINITY,
+        }
+    }
+
+    /// Adds a transition whose width is known exactly once it is certified, and
+    /// unbounded until then.
+    pub fn arc(mut self, from: usize, to: usize, action: A, cost: u32, width: f64) -> Self {
+        let width = Width::exact(width);
+        self.arcs[from].push(Arc { action, to, cost, width_at_most: f64::INFINITY, width });
+        self
+    }
+}
+
+impl<A: Clone + PartialEq + Send + Sync> Space for Toy<A> {
+    type State = usize;
+    type Action = A;
+
+    fn start(&self) -> usize {
+        self.start
+    }
+
+    fn is_goal(&self, &state: &usize) -> bool {
+        self.is_goal[state]
+    }
+
+    fn transitions(&self, &from: &usize) -> Vec<Transition<usize, A>> {
+        let transition = |arc: &Arc<A>| Transition {
+            action: arc.action.clone(),
+            to: arc.to,
+            cost: arc.cost,
+            width_at_most: arc.width_at_most,
+        };
+        self.arcs[from].iter().map(transition).collect()
+    }
+
+    /// Width of the first such transition. Below the floor it claims no more
+    /// than that: its interval is `[-inf, a little less than the floor]`.
+    fn certify(&self, &from: &usize, action: &A, &to: &usize, floor: f64) -> Width {
+        let arc = self.arcs[from].iter().find(|arc| arc.action == *action && arc.to == to);
+        let width = arc.expect("certified transitions exist").width;
+        if width.upper < floor {
+            Width { lower: f64::NEG_INFINITY, upper: (width.upper + floor.min(f64::MAX)) / 2.0 }
+        } else {
+            width
+        }
+    }
+
+    fn remaining_cost(&self, &state: &usize) -> Option<u32> {
+        self.remaining[state]
+    }
+
+    fn width_at_most(&self) -> f64 {
+        self.width_at_most
+    }
+}

@@ -1,0 +1,11 @@
+//! The engines against unlike methods on explicit graphs.
+
+mod algebra;
+mod brackets;
+mod budgets;
+mod edge_cases;
+mod k_best;
+mod laziness;
+mod optimality;
+mod reference;
+mod sample;

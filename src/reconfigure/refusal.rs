@@ -1,0 +1,236 @@
+//! What cannot be planned for, and what is proved impossible before any search.
+
+use std::fmt;
+
+use crate::geometry::{SKIN, Solid, overlap};
+use crate::robot::{Configuration, FaceConnection, Goal, Problem as Unsound};
+use crate::statics::{Bracket, InvalidStructure};
+
+/// Largest coordinate of a cell, so that no arithmetic on cells overflows in
+/// any plan that could ever be found.
+const LARGEST_COORDINATE: u32 = 1 << 24;
+
+/// Why a problem is refused: bad input, which says nothing about plans.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Refusal {
+    /// The data of the start or the goal is unsound.
+    Unsound {
+        /// Which of the two.
+        which: Which,
+        /// Everything that is wrong with it.
+        problems: Vec<Unsound>,
+    },
+    /// The oracle cannot assess the robot.
+    Structure(Vec<InvalidStructure>),
+    /// A cell is too far from the origin for plans to be counted in cells.
+    TooFar {
+        /// Which of the two.
+        which: Which,
+        /// The module.
+        module: String,
+    },
+    /// A module is in the ground or an obstacle.
+    Overlap {
+        /// Which of the two.
+        which: Which,
+        /// The module.
+        module: String,
+    },
+    /// Start and goal are made of different catalogues.
+    CataloguesDiffer,
+    /// Modules whose face connectors are of different models touch or could
+    /// come to touch each other.
+    ConnectorsDoNotMate {
+        /// Names of the two module types.
+        types: [String; 2],
+    },
+    /// The goal does not say where a loaded module of the start ends.
+    LoadedModuleMissing {
+        /// The module.
+        module: String,
+    },
+    /// The goal may be met up to a displacement, but that changes the problem: there are obstacles
+    /// or fixed modules, or gravity is not vertical.
+    NoFreeFrame {
+        /// What stands in the way.
+        because: &'static str,
+    },
+}
+
+/// The start or the goal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Which {
+    /// The start.
+    Start,
+    /// The goal.
+    Goal,
+}
+
+/// Why there is no plan.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Impossible {
+    /// Start and goal have another number of modules of one kind.
+    ModulesDiffer {
+        /// The module type.
+        module_type: String,
+        /// How many the start has (with the same loads and label).
+        start: usize,
+        /// How many the goal has.
+        goal: usize,
+    },
+    /// A module is fixed where the goal does not want it, or the other way round.
+    FixedModule {
+        /// The module.
+        module: String,
+    },
+    /// The start or the goal is not connected.
+    Disconnected(Which),
+    /// The start or the goal cannot stand with the margin required.
+    Unstable {
+        /// Which of the two.
+        which: Which,
+        /// Its margin.
+        margin: Bracket,
+        /// The margin required.
+        required: f64,
+        /// The connection that fails first, if it is one; by ports of the start or the goal.
+        connection: Option<FaceConnection>,
+    },
+    /// Every sequence of actions was tried, or proved too weak.
+    Exhausted {
+        /// The margin required.
+        required: f64,
+    },
+}
+
+/// Why a problem is not searched.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Rejection {
+    /// Bad input.
+    Refused(Refusal),
+    /// Proved to have no plan.
+    Impossible(Impossible),
+}
+
+impl From<Refusal> for Rejection {
+    fn from(refusal: Refusal) -> Self {
+        Self::Refused(refusal)
+    }
+}
+
+impl From<Impossible> for Rejection {
+    fn from(impossible: Impossible) -> Self {
+        Self::Impossible(impossible)
+    }
+}
+
+impl fmt::Display for Which {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Start => "start",
+            Self::Goal => "goal",
+        })
+    }
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Unsound { which, problems } => {
+                let listed: Vec<_> = problems.iter().map(ToString::to_string).collect();
+                write!(f, "the {which} is unsound: {}", listed.join("; "))
+            }
+            Self::Structure(problems) => {
+                let listed: Vec<_> = problems.iter().map(|p| format!("{}: {}", p.place, p.problem)).collect();
+                write!(f, "the oracle cannot assess the robot: {}", listed.join("; "))
+            }
+            Self::TooFar { which, module } => {
+                write!(f, "module `{module}` of the {which} is more than {LARGEST_COORDINATE} cells from the origin")
+            }
+            Self::Overlap { which, module } => {
+                write!(f, "module `{module}` of the {which} overlaps the ground or an obstacle")
+            }
+            Self::CataloguesDiffer => f.write_str("start and goal are made of different catalogues"),
+            Self::ConnectorsDoNotMate { types: [a, b] } => {
+                write!(f, "the face connectors of `{a}` and `{b}` are of different models and do not mate")
+            }
+            Self::LoadedModuleMissing { module } => {
+                write!(f, "the goal does not place module `{module}`, which carries a load in the start")
+            }
+            Self::NoFreeFrame { because } => write!(f, "the goal cannot be met up to a displacement: {because}"),
+        }
+    }
+}
+
+impl std::error::Error for Refusal {}
+
+impl fmt::Display for Impossible {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::ModulesDiffer { module_type, start, goal } => {
+                write!(f, "the start has {start} interchangeable modules of type `{module_type}`, the goal {goal}")
+            }
+            Self::FixedModule { module } => write!(f, "module `{module}` is fixed and cannot be as the goal wants it"),
+            Self::Disconnected(which) => write!(f, "the {which} is not connected"),
+            Self::Unstable { which, margin, required, .. } => write!(
+                f,
+                "the {which} is not stable enough: its margin is at most {:.4}, {required:.4} is required",
+                margin.upper
+            ),
+            Self::Exhausted { required } => {
+                write!(f, "no sequence of actions keeps the margin at {required:.4} or above")
+            }
+        }
+    }
+}
+
+/// Refuses data that no robot can have and pairs that cannot be compared.
+/// Disconnected robots are no bad input here.
+pub(super) fn check(start: &Configuration, goal: &Goal) -> Result<(), Refusal> {
+    for (which, configuration) in [(Which::Start, start), (Which::Goal, &goal.configuration)] {
+        let mut problems = configuration.catalogue.problems();
+        if problems.is_empty() {
+            problems = configuration.problems();
+            problems.retain(|problem| problem.fault != crate::robot::Fault::Disconnected);
+        }
+        if !problems.is_empty() {
+            return Err(Refusal::Unsound { which, problems });
+        }
+        check_places(which, configuration)?;
+    }
+    if start.catalogue != goal.configuration.catalogue {
+        return Err(Refusal::CataloguesDiffer);
+    }
+    check_mating(start)
+}
+
+/// Refuses modules out of reach, in the ground or in an obstacle.
+fn check_places(which: Which, configuration: &Configuration) -> Result<(), Refusal> {
+    let obstacles: Vec<Solid> = configuration.environment.obstacles.iter().map(Solid::from).collect();
+    for (index, module) in configuration.modules.iter().enumerate() {
+        if module.placement.cell.iter().any(|c| c.unsigned_abs() > LARGEST_COORDINATE) {
+            return Err(Refusal::TooFar { which, module: module.id.clone() });
+        }
+        let solid = Solid::new(configuration.module_type(index).body.shape.clone(), configuration.pose(index));
+        let skin = SKIN * solid.size();
+        let ground = configuration.environment.ground.as_ref();
+        let sunk = ground.is_some_and(|ground| solid.vertices().iter().any(|p| !(p.z >= ground.height - skin)));
+        if sunk || obstacles.iter().any(|obstacle| overlap(&solid, obstacle, skin)) {
+            return Err(Refusal::Overlap { which, module: module.id.clone() });
+        }
+    }
+    Ok(())
+}
+
+/// Refuses modules whose faces could meet without being able to connect.
+fn check_mating(start: &Configuration) -> Result<(), Refusal> {
+    for a in &start.modules {
+        for b in &start.modules {
+            if start.catalogue.face_connector(a.module_type, b.module_type).is_none() {
+                let types = [a, b].map(|module| start.catalogue.module_types[module.module_type].name.clone());
+                return Err(Refusal::ConnectorsDoNotMate { types });
+            }
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,111 @@
+//! Checks a plan from the definitions, sharing no decision with the planner.
+//!
+//! It has its own legality of actions, checks collisions among all bodies by
+//! continuous sweeps of the solids, and asks the oracle about every transient state on
+//! a fixed grid that is denser than the planner's. It uses neither the
+//! move generator nor canonical layouts; it shares with the planner the robot data, the
+//! assembly of structures and the oracle.
+
+mod arrival;
+mod claims;
+mod failure;
+pub(super) mod legality;
+mod transit;
+
+use crate::robot::{Configuration, Goal};
+use crate::statics::Bracket;
+
+use super::action::Action;
+use super::assembly::Assembler;
+use super::plan::Plan;
+use super::refusal::{Refusal, check};
+pub use failure::{Failure, Fault};
+use legality::{Transition, transition};
+use transit::{Checker, Found};
+
+/// What a replay found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Replay {
+    /// Everything that is wrong, in the order of the actions; the plan's
+    /// own claims and the goal come last. Empty for a plan that verifies.
+    pub failures: Vec<Failure>,
+    /// Smallest margin over all states that were reached.
+    pub margin: Bracket,
+    /// Actions that could be carried out.
+    pub actions_replayed: usize,
+    /// Structures that the oracle assessed.
+    pub oracle_solves: u64,
+}
+
+impl Replay {
+    /// Whether nothing is wrong.
+    pub fn is_verified(&self) -> bool {
+        self.failures.is_empty()
+    }
+}
+
+/// Replays a plan from `start` and checks everything that it claims.
+///
+/// `required` is the margin that every transient state must have. On the grid a
+/// move may fall below a positive requirement by the [sampling tolerance](claims::tolerance), but
+/// never below 0, since the planner samples elsewhere; a state at rest may not.
+/// A plan that claims no margins (made by geometry alone) is held to the same requirement.
+///
+/// After an action that is not legal the rest cannot be replayed, and is not.
+///
+/// # Errors
+/// [`Refusal`] when start and goal themselves are unsound.
+pub fn replay(start: &Configuration, goal: &Goal, plan: &Plan, required: f64) -> Result<Replay, Refusal> {
+    check(start, goal)?;
+    let assembler = Assembler::new(start);
+    let mut checker = Checker::new(start, &assembler, required);
+    let mut state = start.clone();
+    state.connections.sort_unstable();
+
+    let at_start = checker.rest(None, &state)?;
+    let mut found = vec![at_start];
+    let mut legal = true;
+    for (index, planned) in plan.actions.iter().enumerate() {
+        match transition(&state, &planned.action) {
+            Err(fault) => {
+                checker.fail(Some(index), None, fault, None);
+                legal = false;
+                break;
+            }
+            Ok(next) => {
+                let bottleneck = plan.bottleneck.as_ref().filter(|b| b.action == Some(index)).map(|b| b.phase);
+                let claimed: Vec<f64> = planned.phase.into_iter().chain(bottleneck).collect();
+                found.push(take(&mut checker, index, &state, &next, &claimed)?);
+                state = next.after;
+            }
+        }
+    }
+    let actions_replayed = found.len() - 1;
+    claims::check(&mut checker, plan, &found);
+    if legal && let Some(fault) = arrival::missing(start, &state, goal) {
+        checker.fail(None, None, fault, None);
+    }
+    let margin = found.iter().map(|f| f.margin).reduce(Bracket::min).expect("the start was checked");
+    Ok(Replay { margin, actions_replayed, oracle_solves: checker.solves, failures: checker.failures })
+}
+
+/// Checks one legal action and says what margins it has.
+fn take(
+    checker: &mut Checker,
+    index: usize,
+    before: &Configuration,
+    next: &Transition,
+    claimed: &[f64],
+) -> Result<Found, Refusal> {
+    let during = match &next.path {
+        Some(path) => Some(checker.transit(index, before, path, claimed)?),
+        None => None,
+    };
+    let rest = checker.rest(Some(index), &next.after)?;
+    Ok(during.map_or(rest.clone(), |during| during.followed_by(rest)))
+}
+
+/// How many of a plan's actions are moves.
+fn count_moves(plan: &Plan) -> usize {
+    plan.actions.iter().map(|planned| planned.action).filter(Action::is_move).count()
+}

@@ -1,0 +1,32 @@
+//! At which phases of a move the oracle is asked. The only place for these numbers.
+
+use super::moves::{Motion, Move, Turn};
+
+/// Steps of a slide before refinement: every eighth of a cell.
+const SLIDE_STEPS: u32 = 8;
+
+/// Steps of a quarter pivot before refinement: every 15 degrees.
+const QUARTER_STEPS: u32 = 6;
+
+/// Around the worst sample, a slide is refined until samples are closer than this phase.
+const SLIDE_RESOLUTION: f64 = 1.0 / 64.0;
+
+/// Around the worst sample, a pivot is refined until samples are closer than this, in degrees.
+const PIVOT_RESOLUTION_DEGREES: f64 = 1.5;
+
+/// How many equal steps a move is sampled in before refinement.
+pub fn steps(step: Move) -> u32 {
+    match step.motion {
+        Motion::Slide { .. } => SLIDE_STEPS,
+        Motion::Pivot { turn: Turn::Quarter, .. } => QUARTER_STEPS,
+        Motion::Pivot { turn: Turn::Half, .. } => 2 * QUARTER_STEPS,
+    }
+}
+
+/// The distance in phase below which samples are not refined further.
+pub fn resolution(step: Move) -> f64 {
+    match step.motion {
+        Motion::Slide { .. } => SLIDE_RESOLUTION,
+        Motion::Pivot { turn, .. } => PIVOT_RESOLUTION_DEGREES / turn.degrees(),
+    }
+}

@@ -1,0 +1,134 @@
+//! The default search space: placements with every possible connection engaged.
+//!
+//! More connections never lower the margin (statics: monotony), so between moves
+//! it is never worse to have all engaged. A transition is one move with the
+//! detachments that it needs before it and all attachments after it; of the
+//! detachments only the last state can be the worst, and of the attachments none
+//! is worse than the end of the move. So this space has a path of at least the width
+//! and at most the moves of every plan of primitive actions, and every path
+//! of it is such a plan.
+//!
+//! The goal's own connections are reached by a last transition without cost.
+
+use planners::{Space, Transition, Width};
+
+use super::domain::{Domain, width};
+use super::goal::Arrival;
+use super::layout::{Bond, Layout};
+use super::moves::Move;
+use super::oracle::Worst;
+
+/// Placements, all connections engaged; or the goal with its own connections.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct State {
+    layout: Layout,
+    arrived: bool,
+}
+
+/// A transition.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Action {
+    /// A move, with the detachments before it and the attachments after it.
+    Move(Move),
+    /// The detachments that lead to the goal's own connections.
+    Finish(Arrival),
+}
+
+/// The space of a domain.
+pub struct Saturated<'a> {
+    domain: &'a Domain<'a>,
+    /// Margin of the start with its own connections: no path is wider.
+    start: Width,
+    /// No path is wider.
+    at_most: f64,
+}
+
+/// The connections of a saturated layout that a move keeps until it begins, ascending.
+pub fn kept(layout: &Layout, step: Move) -> Vec<Bond> {
+    let mut bonds = layout.touching();
+    bonds.retain(|&bond| !bond.touches(step.from) || step.may_keep(bond));
+    bonds
+}
+
+impl<'a> Saturated<'a> {
+    /// The space of a domain whose start has this margin and whose paths are no
+    /// wider than `at_most`.
+    pub fn new(domain: &'a Domain<'a>, start: Width, at_most: f64) -> Self {
+        Self { domain, start, at_most }
+    }
+
+    /// Margin of a move with the detachments before it.
+    fn of_move(&self, layout: &Layout, step: Move, floor: f64) -> Worst {
+        let bonds = kept(layout, step);
+        if matches!(step.motion, super::moves::Motion::Pivot { .. }) {
+            // While it slides the module is held as after the detachments; while it pivots it is not.
+            let released = self.domain.of_state(layout, &bonds);
+            if released.margin.upper < floor {
+                return released;
+            }
+            return released.or_worse(self.domain.of_move(layout, &bonds, step, floor));
+        }
+        self.domain.of_move(layout, &bonds, step, floor)
+    }
+}
+
+impl Space for Saturated<'_> {
+    type State = State;
+    type Action = Action;
+
+    fn start(&self) -> State {
+        State { layout: self.domain.problem.start_layout().clone(), arrived: false }
+    }
+
+    fn is_goal(&self, state: &State) -> bool {
+        state.arrived
+    }
+
+    fn transitions(&self, from: &State) -> Vec<Transition<State, Action>> {
+        if from.arrived {
+            return Vec::new();
+        }
+        let layout = &from.layout;
+        let width_at_most = self.at_most;
+        let finish = self.domain.problem.goal().arrival(layout).map(|arrival| Transition {
+            action: Action::Finish(arrival),
+            to: State { layout: layout.clone(), arrived: true },
+            cost: 0,
+            width_at_most,
+        });
+        let moves = self.domain.moves(layout).into_iter().filter(|&step| {
+            let bonds = kept(layout, step);
+            self.domain.is_connected(layout, &bonds) && self.domain.stays_connected(layout, &bonds, step)
+        });
+        let moves = moves.map(|step| Transition {
+            action: Action::Move(step),
+            to: State { layout: self.domain.after(layout, step), arrived: false },
+            cost: 1,
+            width_at_most,
+        });
+        finish.into_iter().chain(moves).collect()
+    }
+
+    fn certify(&self, from: &State, action: &Action, _to: &State, floor: f64) -> Width {
+        if !self.domain.stability {
+            return Width::UNLIMITED;
+        }
+        let worst = match *action {
+            Action::Move(step) => self.of_move(&from.layout, step, floor),
+            Action::Finish(arrival) => self.domain.of_state(&from.layout, &self.domain.problem.goal().bonds(arrival)),
+        };
+        width(worst.margin).in_series(self.start)
+    }
+
+    fn remaining_cost(&self, state: &State) -> Option<u32> {
+        self.domain.problem.goal().fewest_moves(&state.layout)
+    }
+
+    fn width_at_most(&self) -> f64 {
+        self.at_most
+    }
+
+    fn heap_bytes(&self, state: &State) -> usize {
+        size_of_val(state.layout.placed())
+    }
+}

@@ -1,0 +1,240 @@
+//! The oracle: cuts a structure into blocks, answers for each, and puts the
+//! answers together.
+
+use crate::spatial::{Twist, Vec3, Wrench};
+
+use super::assessment::{Assessment, Bracket, ConnectionState, LeftOut, Question, Verdict};
+use super::blocks::{Block, Link, Vertex, cut};
+use super::closed_form::assess_bridge;
+use super::frame::LinkFrame;
+use super::loads::{BodyLoad, lump, own_loads};
+use super::part::Part;
+use super::solve_block::assess_block;
+use super::structure::Structure;
+use super::tolerances::{CRITICAL_SHARE, DATA, TIE};
+use super::validate::{InvalidStructure, validate};
+
+/// Finds the utilisation of `structure` as a bracket, and all that follows from it.
+///
+/// The utilisation t is the smallest common factor on all rated strengths with
+/// which every free body can be in balance,
+///
+///     t* = min t  subject to  balance, friction cones, s_l(w_l) <= t S_l,
+///
+/// the internal stability margin is `1 - t*`. Both ends of the bracket are
+/// evaluated from wrench and twist fields on the structure's own data, for loads
+/// and directions that are meant up to a relative 1e-12. With
+/// [`Question::Decide`] the answer may stop at the first block that decides, and
+/// states of the other blocks stay zero.
+///
+/// # Errors
+/// Non-finite or out-of-range data, or indices that point nowhere; all of them at once.
+pub fn assess(structure: &Structure, question: Question) -> Result<Assessment, Vec<InvalidStructure>> {
+    validate(structure)?;
+    let pieces = cut(structure);
+    let loads = lump(structure, &pieces.blocks, own_loads(structure));
+    let mut answer = Answer::new(structure, &pieces.blocks);
+    for &root in &pieces.afloat {
+        if let Some(twist) = drift(&loads[root]) {
+            answer.collapse_afloat(root, twist);
+            return Ok(answer.finish());
+        }
+    }
+    let (bridges, cyclic): (Vec<usize>, Vec<usize>) =
+        (0..pieces.blocks.len()).partition(|&i| pieces.blocks[i].links.len() == 1);
+    for index in bridges {
+        let part = assess_bridge(structure, &pieces.blocks[index], &loads);
+        answer.left_out_link(pieces.blocks[index].links[0]);
+        answer.add(index, part);
+    }
+    for index in cyclic {
+        if answer.settled(question) {
+            break;
+        }
+        let block = &pieces.blocks[index];
+        let part = assess_block(structure, block, &loads, question);
+        answer.count_solved(block);
+        answer.add(index, part);
+    }
+    Ok(answer.finish())
+}
+
+/// The motion in which a body without any support is carried off by its load;
+/// `None` when it is in balance.
+fn drift(load: &BodyLoad) -> Option<Twist> {
+    let balanced = load.wrench.force.norm() <= DATA * load.force_size.norm()
+        && load.wrench.torque.norm() <= DATA * load.torque_size.norm();
+    (!balanced).then_some(Twist::new(load.wrench.force, load.wrench.torque))
+}
+
+/// The answers of the blocks, put together.
+struct Answer<'s> {
+    structure: &'s Structure,
+    blocks: &'s [Block],
+    utilisation: Bracket,
+    collapsed: bool,
+    connections: Vec<ConnectionState>,
+    contacts: Vec<Vec3>,
+    /// The block whose mechanism proves the lower bound, with its motion.
+    moving: Option<(usize, Vec<Twist>)>,
+    mechanism: Vec<Twist>,
+    /// Per block: lower bound, and its links' shares in its mechanism.
+    candidates: Vec<(f64, usize, Vec<f64>)>,
+    left_out: LeftOut,
+    undecided_because: Option<String>,
+}
+
+impl<'s> Answer<'s> {
+    fn new(structure: &'s Structure, blocks: &'s [Block]) -> Self {
+        let idle = ConnectionState { wrench: Wrench::ZERO, strength: 0.0, utilisation: 0.0, critical: false };
+        Self {
+            structure,
+            blocks,
+            utilisation: Bracket::exact(0.0),
+            collapsed: false,
+            connections: vec![idle; structure.connections.len()],
+            contacts: vec![Vec3::zeros(); structure.contacts.len()],
+            moving: None,
+            mechanism: vec![Twist::ZERO; structure.bodies.len()],
+            candidates: Vec::new(),
+            left_out: LeftOut {
+                fixed_bodies: structure.bodies.iter().filter(|body| body.fixed).count(),
+                ..LeftOut::default()
+            },
+            undecided_because: None,
+        }
+    }
+
+    fn left_out_link(&mut self, link: Link) {
+        match link {
+            Link::Connection(_) => self.left_out.closed_form_connections += 1,
+            Link::Contact(_) => self.left_out.closed_form_contacts += 1,
+        }
+    }
+
+    fn count_solved(&mut self, block: &Block) {
+        self.left_out.solved_blocks += 1;
+        self.left_out.largest_block_bodies = self.left_out.largest_block_bodies.max(block.bodies.len());
+    }
+
+    /// Whether the blocks so far answer the question for the whole.
+    fn settled(&self, question: Question) -> bool {
+        self.collapsed
+            || match question {
+                Question::Decide(threshold) => self.utilisation.lower > threshold,
+                Question::Value => false,
+            }
+    }
+
+    fn collapse_afloat(&mut self, root: usize, twist: Twist) {
+        self.collapsed = true;
+        self.mechanism[root] = twist;
+        self.moving = None;
+        self.spread();
+    }
+
+    fn add(&mut self, index: usize, part: Part) {
+        if self.collapsed {
+            return;
+        }
+        match part {
+            Part::Collapses { mechanism } => {
+                self.collapsed = true;
+                self.moving = Some((index, mechanism));
+            }
+            Part::Stands { utilisation, wrenches, demands, mechanism, shares, undecided_because } => {
+                for ((&link, wrench), demand) in self.blocks[index].links.iter().zip(&wrenches).zip(demands) {
+                    self.record(link, wrench, demand);
+                }
+                let strongest = self.candidates.iter().map(|candidate| candidate.0).fold(0.0, f64::max);
+                if utilisation.lower > strongest {
+                    self.moving = Some((index, mechanism));
+                }
+                self.candidates.push((utilisation.lower, index, shares));
+                self.utilisation = self.utilisation.max(utilisation);
+                self.undecided_because = self.undecided_because.take().or(undecided_because);
+            }
+        }
+    }
+
+    fn record(&mut self, link: Link, wrench: &Wrench, utilisation: f64) {
+        match link {
+            Link::Connection(i) => {
+                let rated = self.structure.connectors[self.structure.connections[i].connector].strength;
+                self.connections[i] =
+                    ConnectionState { wrench: *wrench, strength: utilisation * rated, utilisation, critical: false };
+            }
+            Link::Contact(i) => self.contacts[i] = LinkFrame::new(self.structure, link).axes * wrench.force,
+        }
+    }
+
+    /// Carries the moving block's motion on to what hangs from it: every block
+    /// comes after the one that its root belongs to.
+    fn spread(&mut self) {
+        let moving = self.moving.take();
+        for (index, block) in self.blocks.iter().enumerate() {
+            if let Some((moved, twists)) = &moving
+                && *moved == index
+            {
+                for (&body, twist) in block.bodies.iter().zip(twists) {
+                    self.mechanism[body] = *twist;
+                }
+            } else if let Vertex::Body(root) = block.root {
+                let (twist, com) = (self.mechanism[root], self.structure.bodies[root].com);
+                for &body in &block.bodies {
+                    self.mechanism[body] = twist.moved(&(self.structure.bodies[body].com - com));
+                }
+            }
+        }
+    }
+
+    /// Marks the connections that break in the mechanisms of the largest utilisation.
+    fn mark_critical(&mut self) {
+        let largest = self.utilisation.lower;
+        for (lower, index, shares) in &self.candidates {
+            if largest > 0.0 && *lower >= largest * (1.0 - TIE) {
+                for (&link, share) in self.blocks[*index].links.iter().zip(shares) {
+                    if let Link::Connection(i) = link {
+                        self.connections[i].critical = *share > CRITICAL_SHARE;
+                    }
+                }
+            }
+        }
+    }
+
+    fn finish(mut self) -> Assessment {
+        if self.moving.is_some() {
+            self.spread();
+        }
+        let verdict = if self.collapsed {
+            self.utilisation = Bracket::exact(f64::INFINITY);
+            Verdict::WholeBodyUnstable
+        } else if self.utilisation.upper <= 1.0 {
+            Verdict::Stable
+        } else if self.utilisation.lower > 1.0 {
+            Verdict::InternallyUnstable
+        } else {
+            Verdict::Undecided
+        };
+        if !self.collapsed {
+            self.mark_critical();
+        }
+        let undecided_because = match verdict {
+            Verdict::Undecided => {
+                let Bracket { lower, upper } = self.utilisation;
+                let cause = self.undecided_because.take();
+                Some(cause.unwrap_or_else(|| format!("the bracket [{lower}, {upper}] straddles 1 within rounding")))
+            }
+            Verdict::Stable | Verdict::InternallyUnstable | Verdict::WholeBodyUnstable => None,
+        };
+        Assessment {
+            verdict,
+            utilisation: self.utilisation,
+            connections: self.connections,
+            contacts: self.contacts,
+            mechanism: self.mechanism,
+            left_out: self.left_out,
+            undecided_because,
+        }
+    }
+}

@@ -1,0 +1,222 @@
+//! Bounds on a block's utilisation, from fields alone.
+//!
+//! Limit-analysis duality: the largest demand of *any* balanced wrench field is
+//! an upper bound, and power over dissipation of *any* admissible twist field is
+//! a lower bound, whoever proposed them. Both are evaluated here on the original,
+//! unscaled data, without the solver's matrices or status.
+
+use crate::spatial::{Twist, Wrench};
+
+use super::balance::residuals;
+use super::blocks::{Block, Link};
+use super::connector::{Connector, Model};
+use super::demand::{WrenchError, demand};
+use super::frame::LinkFrame;
+use super::loads::{BodyLoad, cross_size};
+use super::program::{Program, local_body};
+use super::second_order::norm;
+use super::structure::Structure;
+use super::tolerances::{BALANCE, DATA, ROUNDING};
+
+/// A block with what its bounds are evaluated from.
+#[derive(Clone, Copy)]
+pub(super) struct Problem<'a> {
+    pub structure: &'a Structure,
+    pub block: &'a Block,
+    pub loads: &'a [BodyLoad],
+    pub program: &'a Program,
+}
+
+impl Problem<'_> {
+    /// Upper bound on the utilisation from a wrench per link, in its frame, and
+    /// the utilisation of each link (0 for contacts).
+    /// `None` when the field does not balance or leaves a friction cone.
+    ///
+    /// What imbalance is left, at most [`BALANCE`] of the flow through a body,
+    /// is charged with its power in the twist field `twists` of unit dissipation.
+    pub(super) fn upper_bound(&self, field: &[Wrench], twists: Option<&[Twist]>) -> Option<(f64, Vec<f64>)> {
+        let Self { structure, block, program, .. } = self;
+        let mut charge = 0.0;
+        let through = self.forces_through(field);
+        for (i, lacking) in residuals(structure, block, program, self.loads, field).iter().enumerate() {
+            let allowed = BALANCE * program.scales.force[i] + ROUNDING * through[i];
+            let holds = lacking.force.norm() <= allowed && lacking.torque.norm() <= allowed * program.scales.lever[i];
+            if !holds {
+                return None;
+            }
+            charge += twists.map_or(0.0, |twists| twists[i].power(lacking).abs());
+        }
+        let mut demands = Vec::with_capacity(field.len());
+        for (l, (&link, wrench)) in block.links.iter().zip(field).enumerate() {
+            match link {
+                Link::Contact(i) => {
+                    let slip = DATA * program.scales.link[l];
+                    let friction = structure.contacts[i].friction;
+                    let held = wrench.force.z >= -slip
+                        && wrench.force.xy().norm() <= friction * wrench.force.z.max(0.0) + slip;
+                    if !held {
+                        return None;
+                    }
+                    demands.push(0.0);
+                }
+                Link::Connection(i) => {
+                    let connector = &structure.connectors[structure.connections[i].connector];
+                    let upper = demand(connector, wrench, &rounding(wrench)).utilisation.upper;
+                    if !(upper < f64::INFINITY) {
+                        return None;
+                    }
+                    demands.push(upper);
+                }
+            }
+        }
+        Some((demands.iter().copied().fold(0.0, f64::max) + charge, demands))
+    }
+
+    /// Sum of the sizes of all forces on every body of the block.
+    fn forces_through(&self, field: &[Wrench]) -> Vec<f64> {
+        let mut through = vec![0.0; self.block.bodies.len()];
+        for (frame, wrench) in self.program.frames.iter().zip(field) {
+            for (side, _) in frame.sides() {
+                if let Some(i) = local_body(self.block, side) {
+                    through[i] += wrench.force.norm() + wrench.torque.norm() / self.program.scales.lever[i];
+                }
+            }
+        }
+        through
+    }
+
+    /// How much each link moves in a twist field, as the power it would take up
+    /// if the force that typically flows through it acted along its motion.
+    pub(super) fn link_powers(&self, twists: &[Twist]) -> Vec<f64> {
+        let Self { structure, block, program, .. } = self;
+        let scales = program.frames.iter().zip(&program.scales.link);
+        scales
+            .map(|(frame, force)| {
+                let relative = frame.relative_twist(structure, |body| self.twist(twists, body));
+                let levers = frame.sides().into_iter().filter_map(|(side, _)| local_body(block, side));
+                let lever = levers.map(|i| program.scales.lever[i]).fold(0.0, f64::max);
+                force * (relative.linear.norm() + relative.angular.norm() * lever)
+            })
+            .collect()
+    }
+
+    /// The twist of a body of the structure, at rest outside the block.
+    fn twist(&self, twists: &[Twist], body: usize) -> Twist {
+        self.block.bodies.binary_search(&body).map_or(Twist::ZERO, |i| twists[i])
+    }
+
+    /// Lower bound on the utilisation from a twist per body of the block, of its
+    /// centre of mass in W, with the share of each link in the dissipation.
+    /// `None` when the field is not admissible or does no positive work.
+    pub(super) fn lower_bound(&self, twists: &[Twist]) -> Option<(f64, Vec<f64>)> {
+        let Self { structure, block, program, .. } = self;
+        let mut shares = Vec::with_capacity(block.links.len());
+        let mut dissipation = 0.0;
+        for (&link, frame) in block.links.iter().zip(&program.frames) {
+            let relative = frame.relative_twist(structure, |body| self.twist(twists, body));
+            let error = ROUNDING * self.velocity_size(frame, twists);
+            let share = match link {
+                Link::Contact(i) => {
+                    let friction = structure.contacts[i].friction;
+                    let slack = relative.linear.z - friction * relative.linear.xy().norm();
+                    if !(slack >= error * (1.0 + friction)) {
+                        return None;
+                    }
+                    0.0
+                }
+                Link::Connection(i) => {
+                    let connector = &structure.connectors[structure.connections[i].connector];
+                    dissipated(connector, &relative, error)?
+                }
+            };
+            dissipation += share;
+            shares.push(share);
+        }
+        let (mut power, mut size) = (0.0, 0.0);
+        for (twist, &body) in twists.iter().zip(&block.bodies) {
+            let load = &self.loads[body];
+            power += twist.power(&load.wrench);
+            size += twist.linear.abs().dot(&load.force_size) + twist.angular.abs().dot(&load.torque_size);
+        }
+        power -= size * (block.bodies.len() as f64 + 16.0) * f64::EPSILON;
+        let dissipation = dissipation * (1.0 + (block.links.len() as f64 + 16.0) * f64::EPSILON);
+        if !(power > 0.0 && dissipation > 0.0) {
+            return None;
+        }
+        for share in &mut shares {
+            *share /= dissipation;
+        }
+        Some((power / dissipation, shares))
+    }
+
+    /// Size of the terms in a link's relative velocity.
+    fn velocity_size(&self, frame: &LinkFrame, twists: &[Twist]) -> f64 {
+        let mut size = 0.0;
+        for (side, _) in frame.sides() {
+            if let Some(i) = local_body(self.block, side) {
+                let arm = frame.origin - self.structure.bodies[self.block.bodies[i]].com;
+                let twist = &twists[i];
+                size += (twist.linear.abs() + cross_size(&arm, &twist.angular.abs())).norm() + twist.angular.norm();
+            }
+        }
+        size
+    }
+}
+
+/// Rounding of a wrench that was just computed.
+fn rounding(wrench: &Wrench) -> WrenchError {
+    WrenchError { force: wrench.force.abs() * ROUNDING, torque: wrench.torque.abs() * ROUNDING }
+}
+
+/// Power that a connector at its rated strength dissipates in a relative twist
+/// of the child, in the connection frame; `None` when the twist is not
+/// admissible, i.e. when the connector could resist it without limit. Each
+/// component of the twist is uncertain by `error`.
+fn dissipated(connector: &Connector, relative: &Twist, error: f64) -> Option<f64> {
+    let Twist { linear: v, angular: w } = relative;
+    match &connector.model {
+        Model::Cone { friction: [a, b], radius: [c, d, e] } => {
+            let rubbing = norm(&[a * v.x, b * v.y, c * w.x, d * w.y, e * w.z]);
+            let slack = v.z - rubbing;
+            let uncertain = error * (1.0 + a + b + c + d + e);
+            (slack >= uncertain).then_some(connector.strength * (v.z + error))
+        }
+        Model::Box { shear, tension, compression, bending, torsion } => {
+            let components = [
+                (v.x, shear[0], shear[0]),
+                (v.y, shear[1], shear[1]),
+                (v.z, *tension, *compression),
+                (w.x, bending[0], bending[0]),
+                (w.y, bending[1], bending[1]),
+                (w.z, *torsion, *torsion),
+            ];
+            let mut total = 0.0;
+            for (velocity, opening_limit, closing_limit) in components {
+                let admissible = match (opening_limit.is_finite(), closing_limit.is_finite()) {
+                    (true, true) => true,
+                    (true, false) => velocity >= error,
+                    (false, true) => velocity <= -error,
+                    (false, false) => velocity.abs() <= error * (DATA / ROUNDING),
+                };
+                if !admissible {
+                    return None;
+                }
+                let limit = if velocity >= 0.0 { opening_limit } else { closing_limit };
+                if limit.is_finite() {
+                    total += limit * (velocity.abs() + error);
+                }
+            }
+            Some(total)
+        }
+        Model::Patch { friction, points } => {
+            for p in points {
+                let at = relative.at(&crate::spatial::Vec3::new(p[0], p[1], 0.0));
+                let uncertain = error * (1.0 + friction) * (1.0 + p[0].abs() + p[1].abs());
+                if !(at.z - friction * at.xy().norm() >= uncertain) {
+                    return None;
+                }
+            }
+            Some(connector.strength * (v.z + error))
+        }
+    }
+}

@@ -1,0 +1,127 @@
+//! Proof that no connection strength helps: whole-body instability.
+//!
+//! With strength without bound a connection is rigid, so bodies joined by
+//! connections move as one. The structure cannot stand exactly if these rigid
+//! clusters have a motion that separates every contact, or lets it slip at more
+//! than its friction angle, and in which the loads do positive work. The motion
+//! is found by a cone program of its own (far smaller than the block's) and
+//! checked here against the contacts.
+//!
+//! A connector that leaves some motion free whatever its strength (a limit of
+//! 0, a frictionless or degenerate patch) does not join a cluster, it is a
+//! constraint between two of them.
+
+use crate::spatial::{Twist, Vec3};
+
+use super::blocks::{Block, Link};
+use super::clusters::{Clusters, Reduced};
+use super::conic::{Attempt, solve};
+use super::connector::{Connector, Model};
+use super::hull::edges;
+use super::loads::BodyLoad;
+use super::program::{Program, Purpose};
+use super::second_order::norm;
+use super::structure::Structure;
+
+/// Largest force, as a multiple of the loads, that could still save a structure
+/// whose mechanism violates a contact by rounding.
+const FORCE_MULTIPLE: f64 = 1e10;
+
+/// Ways of asking for the mechanism, tried in turn.
+const ATTEMPTS: [Attempt; 3] = [
+    Attempt { tolerance: 1e-9, inset: 1e-4, regularization: 1e-8 },
+    Attempt { tolerance: 1e-10, inset: 1e-8, regularization: 1e-8 },
+    Attempt { tolerance: 1e-11, inset: 0.0, regularization: 1e-9 },
+];
+
+/// A mechanism (a twist per body of the block, at its centre of mass, in W) that
+/// proves that no strength lets the block stand; `None` when none was found.
+pub(super) fn find(structure: &Structure, block: &Block, loads: &[BodyLoad]) -> Option<Vec<Twist>> {
+    let clusters = Clusters::new(structure, block, |_, link| match link {
+        Link::Connection(i) => rigid(&structure.connectors[structure.connections[i].connector]),
+        Link::Contact(_) => false,
+    });
+    let mut reduced = clusters.reduce(structure, block, loads)?;
+    for connector in &mut reduced.structure.connectors {
+        unbound(&mut connector.model);
+    }
+    let program = Program::new(&reduced.structure, &reduced.block, &reduced.loads, Purpose::Support);
+    for attempt in &ATTEMPTS {
+        let Some(iterate) = solve(&program, attempt) else { continue };
+        if !(iterate.t > 0.5) {
+            return None;
+        }
+        let twists = program.twists(&iterate.v);
+        if proves(&reduced, &program, &twists) {
+            return Some(clusters.spread(structure, block, &reduced, &twists));
+        }
+    }
+    None
+}
+
+/// Whether a mechanism of the clusters does positive work without any contact
+/// resisting it.
+fn proves(reduced: &Reduced, program: &Program, twists: &[Twist]) -> bool {
+    let Reduced { structure, block, loads, .. } = reduced;
+    let power: f64 = block.bodies.iter().map(|&body| twists[body].power(&loads[body].wrench)).sum();
+    if !(power > 0.0) {
+        return false;
+    }
+    block.links.iter().zip(&program.frames).zip(&program.scales.link).all(|((&link, frame), force)| {
+        let negligible = power / (FORCE_MULTIPLE * force);
+        let relative = frame.relative_twist(structure, |body| twists[body]);
+        let v = relative.linear;
+        match link {
+            Link::Contact(i) => v.z - structure.contacts[i].friction * v.xy().norm() >= -negligible,
+            Link::Connection(i) => {
+                let connector = &structure.connectors[structure.connections[i].connector];
+                resisted(connector, &relative) <= negligible
+            }
+        }
+    })
+}
+
+/// How far a relative twist is from being free of any resistance, in m/s.
+fn resisted(connector: &Connector, relative: &Twist) -> f64 {
+    let Twist { linear: v, angular: w } = relative;
+    match &connector.model {
+        Model::Cone { .. } => norm(&[v.x, v.y, v.z, w.x, w.y, w.z]),
+        Model::Box { shear, tension, compression, bending, torsion } => {
+            let held = |limit: f64, velocity: f64| if limit > 0.0 { velocity.abs() } else { 0.0 };
+            let normal = if v.z > 0.0 { held(*tension, v.z) } else { held(*compression, v.z) };
+            let sideways = held(shear[0], v.x) + held(shear[1], v.y);
+            sideways + normal + held(bending[0], w.x) + held(bending[1], w.y) + held(*torsion, w.z)
+        }
+        Model::Patch { friction, points } => {
+            let closing = points.iter().map(|p| {
+                let at = relative.at(&Vec3::new(p[0], p[1], 0.0));
+                friction * at.xy().norm() - at.z
+            });
+            closing.fold(v.z.abs(), f64::max)
+        }
+    }
+}
+
+/// Whether a connector with strength without bound joins its two bodies rigidly.
+fn rigid(connector: &Connector) -> bool {
+    match &connector.model {
+        Model::Cone { .. } => true,
+        Model::Box { shear, tension, compression, bending, torsion } => {
+            [shear[0], shear[1], *tension, *compression, bending[0], bending[1], *torsion]
+                .iter()
+                .all(|limit| *limit > 0.0)
+        }
+        Model::Patch { friction, points } => *friction > 0.0 && edges(points).iter().all(|edge| edge.distance > 0.0),
+    }
+}
+
+/// Lifts every limit of a model that strength lifts.
+fn unbound(model: &mut Model) {
+    if let Model::Box { shear, tension, compression, bending, torsion } = model {
+        for limit in shear.iter_mut().chain([tension, compression]).chain(bending).chain([torsion]) {
+            if *limit > 0.0 {
+                *limit = f64::INFINITY;
+            }
+        }
+    }
+}

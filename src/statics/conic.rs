@@ -1,0 +1,154 @@
+//! Hands a block's program to Clarabel.
+//!
+//! Clarabel gets the dual: its variables are the scaled twists v, its slacks
+//! `s = c + A'v` the opening velocities, which must lie in the cones, and its
+//! multipliers the scaled wrenches z. That is half the size of the primal form.
+//! Nothing that comes back is believed: see `bracket`.
+
+use clarabel::algebra::CscMatrix;
+use clarabel::solver::{DefaultSettings, DefaultSettingsBuilder, DefaultSolver, IPSolver, SupportedConeT};
+
+use super::program::{Cone, Program};
+use super::respect::respect_unlimited;
+
+/// One way of asking the solver.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Attempt {
+    /// Tolerance on feasibility and gap of the scaled program.
+    pub tolerance: f64,
+    /// How far inside their cones the opening velocities are asked to be, added
+    /// up over all cones. Positive, it keeps the twists admissible in spite of the
+    /// solver's residuals, and rewards forces; negative, it charges for forces,
+    /// which keeps them bounded, and lets the twists leave their cones a little.
+    /// Either way it costs about this much of the scaled optimum.
+    pub inset: f64,
+    /// Static regularisation of the factorisation.
+    pub regularization: f64,
+}
+
+/// What the solver returned, scaled; possibly wrong, possibly a ray.
+pub(super) struct Iterate {
+    /// Twists, by row of the program.
+    pub v: Vec<f64>,
+    /// Variables, by column of the program.
+    pub z: Vec<f64>,
+    /// t over its scale.
+    pub t: f64,
+}
+
+/// Solves `program`. `None` when the solver could not even start or returned
+/// something that is not finite.
+pub(super) fn solve(program: &Program, attempt: &Attempt) -> Option<Iterate> {
+    let layout = Layout::new(program);
+    let heads = program.groups.iter().filter(|group| group.cone != Cone::Free).count() as f64;
+    let inset = attempt.inset / heads;
+    let matrix = layout.matrix(program);
+    let mut limits = vec![0.0; layout.height];
+    for (group, &row) in program.groups.iter().zip(&layout.first_row) {
+        if group.cone != Cone::Free {
+            limits[row] = -inset;
+        }
+    }
+    limits[layout.preload_row] = 1.0;
+    let objective: Vec<f64> = program.load.iter().map(|load| -load).collect();
+    let nothing = CscMatrix::zeros((program.rows(), program.rows()));
+    let settings = settings(attempt)?;
+    let mut solver = DefaultSolver::new(&nothing, &objective, &matrix, &limits, &layout.cones, settings).ok()?;
+    solver.solve();
+    let (x, z) = (&solver.solution.x, &solver.solution.z);
+    if !x.iter().chain(z).all(|value| value.is_finite()) {
+        return None;
+    }
+    let mut variables = vec![0.0; program.columns.len()];
+    for (group, &row) in program.groups.iter().zip(&layout.first_row) {
+        variables[group.first..group.first + group.len].copy_from_slice(&z[row..row + group.len]);
+    }
+    let mut v = x.clone();
+    respect_unlimited(program, &mut v);
+    Some(Iterate { v, z: variables, t: z[layout.preload_row] })
+}
+
+fn settings(attempt: &Attempt) -> Option<DefaultSettings<f64>> {
+    DefaultSettingsBuilder::default()
+        .verbose(false)
+        .presolve_enable(false)
+        .direct_solve_method("qdldl".to_owned())
+        .max_threads(1)
+        .max_iter(120)
+        .tol_feas(attempt.tolerance)
+        .tol_gap_abs(attempt.tolerance)
+        .tol_gap_rel(attempt.tolerance)
+        .static_regularization_constant(attempt.regularization)
+        .build()
+        .ok()
+}
+
+/// Which of Clarabel's rows each group occupies: free ones first, then the
+/// nonnegative ones with t, then the Lorentz cones.
+struct Layout {
+    first_row: Vec<usize>,
+    preload_row: usize,
+    height: usize,
+    cones: Vec<SupportedConeT<f64>>,
+}
+
+impl Layout {
+    fn new(program: &Program) -> Self {
+        let mut first_row = vec![0; program.groups.len()];
+        let mut height = 0;
+        let mut place = |wanted: Cone, height: &mut usize| {
+            for (index, group) in program.groups.iter().enumerate() {
+                if group.cone == wanted {
+                    first_row[index] = *height;
+                    *height += group.len;
+                }
+            }
+        };
+        place(Cone::Free, &mut height);
+        let free = height;
+        place(Cone::NonNegative, &mut height);
+        let preload_row = height;
+        height += 1;
+        let nonnegative = height - free;
+        place(Cone::Lorentz, &mut height);
+        let mut cones = vec![SupportedConeT::ZeroConeT(free), SupportedConeT::NonnegativeConeT(nonnegative)];
+        if free == 0 {
+            cones.remove(0);
+        }
+        let lorentz = program.groups.iter().filter(|group| group.cone == Cone::Lorentz);
+        cones.extend(lorentz.map(|group| SupportedConeT::SecondOrderConeT(group.len)));
+        Self { first_row, preload_row, height, cones }
+    }
+
+    /// `-A'` with t's column, in compressed columns: one per balance row.
+    fn matrix(&self, program: &Program) -> CscMatrix<f64> {
+        let mut columns: Vec<Vec<(usize, f64)>> = vec![Vec::new(); program.rows()];
+        for (group, &first) in program.groups.iter().zip(&self.first_row) {
+            for k in 0..group.len {
+                for &(row, value) in &program.columns[group.first + k].entries {
+                    columns[row].push((first + k, -value));
+                }
+            }
+        }
+        for &(row, value) in &program.preload {
+            columns[row].push((self.preload_row, -value));
+        }
+        let mut starts = Vec::with_capacity(columns.len() + 1);
+        let (mut rows, mut values) = (Vec::new(), Vec::new());
+        starts.push(0);
+        for column in &mut columns {
+            column.sort_unstable_by_key(|entry| entry.0);
+            for &(row, value) in column.iter() {
+                // Several links preload one body: their entries in t's row add up.
+                if rows.len() > starts[starts.len() - 1] && rows.last() == Some(&row) {
+                    *values.last_mut().expect("as long as rows") += value;
+                } else {
+                    rows.push(row);
+                    values.push(value);
+                }
+            }
+            starts.push(rows.len());
+        }
+        CscMatrix::new(self.height, program.rows(), starts, rows, values)
+    }
+}

@@ -1,0 +1,112 @@
+//! The strength that a known wrench demands of a connector.
+
+use crate::spatial::{Twist, Vec3, Wrench};
+
+use super::assessment::Bracket;
+use super::connector::{Connector, Model};
+use super::patch::least_normal_force;
+use super::second_order::norm;
+use super::tolerances::{DATA, ROUNDING};
+
+/// What a connector must provide to carry a wrench.
+#[derive(Clone, Debug)]
+pub(super) struct Demand {
+    /// Utilisation `s / S`, infinite when no strength suffices.
+    pub utilisation: Bracket,
+    /// Relative twist of the child, in the connection frame, in which this
+    /// connector gives way first: per unit of dissipation, so that its power
+    /// against the wrench equals the utilisation.
+    pub failing: Twist,
+}
+
+/// Sizes of the errors in a wrench: bounds on the error of each component.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct WrenchError {
+    pub force: Vec3,
+    pub torque: Vec3,
+}
+
+/// Utilisation that `wrench` demands of `connector`.
+///
+/// `wrench` acts **on the child**, at the connection point, in the connection
+/// frame (z towards the child). The bracket covers rounding and `error`, the
+/// uncertainty of each component of the wrench. The model's equations are in
+/// [`Model`].
+pub(super) fn demand(connector: &Connector, wrench: &Wrench, error: &WrenchError) -> Demand {
+    match &connector.model {
+        Model::Cone { friction, radius } => cone(connector.strength, friction, radius, wrench, error),
+        Model::Box { shear, tension, compression, bending, torsion } => {
+            let negligible = |size: f64| DATA * size;
+            let (force, torque) = (wrench.force.norm(), wrench.torque.norm());
+            let components = [
+                (wrench.force.x, error.force.x, shear[0], shear[0], negligible(force)),
+                (wrench.force.y, error.force.y, shear[1], shear[1], negligible(force)),
+                (wrench.force.z, error.force.z, *tension, *compression, negligible(force)),
+                (wrench.torque.x, error.torque.x, bending[0], bending[0], negligible(torque)),
+                (wrench.torque.y, error.torque.y, bending[1], bending[1], negligible(torque)),
+                (wrench.torque.z, error.torque.z, *torsion, *torsion, negligible(torque)),
+            ];
+            largest_ratio(&components)
+        }
+        Model::Patch { friction, points } => patch(connector.strength, *friction, points, wrench, error),
+    }
+}
+
+fn cone(strength: f64, friction: &[f64; 2], radius: &[f64; 3], wrench: &Wrench, error: &WrenchError) -> Demand {
+    let Wrench { force: f, torque: m } = wrench;
+    let scaled = [f.x / friction[0], f.y / friction[1], m.x / radius[0], m.y / radius[1], m.z / radius[2]];
+    let length = norm(&scaled);
+    let spread = norm(&[
+        error.force.x / friction[0],
+        error.force.y / friction[1],
+        error.torque.x / radius[0],
+        error.torque.y / radius[1],
+        error.torque.z / radius[2],
+    ]) + error.force.z
+        + ROUNDING * (length + f.z.abs());
+    let demanded = length - f.z;
+    let unit = |k: usize| if length > 0.0 { scaled[k] / length } else { 0.0 };
+    let linear = Vec3::new(-unit(0) / friction[0], -unit(1) / friction[1], 1.0);
+    let angular = Vec3::new(-unit(2) / radius[0], -unit(3) / radius[1], -unit(4) / radius[2]);
+    Demand {
+        utilisation: around(demanded, spread, strength),
+        failing: Twist::new(linear / strength, angular / strength),
+    }
+}
+
+fn largest_ratio(components: &[(f64, f64, f64, f64, f64); 6]) -> Demand {
+    let mut utilisation = Bracket::exact(0.0);
+    let mut failing = [0.0; 6];
+    for (k, &(value, error, negative_limit, positive_limit, negligible)) in components.iter().enumerate() {
+        let limit = if value < 0.0 { negative_limit } else { positive_limit };
+        if limit.is_infinite() || (limit == 0.0 && value.abs() <= negligible + error) {
+            continue;
+        }
+        let ratio = value.abs() / limit;
+        if ratio > utilisation.upper {
+            failing = [0.0; 6];
+            failing[k] = -value.signum() / if limit > 0.0 { limit } else { 1.0 };
+        }
+        let spread = if limit > 0.0 { error / limit + ROUNDING * ratio } else { 0.0 };
+        utilisation = utilisation.max(around(ratio, spread, 1.0));
+    }
+    let [a, b, c, d, e, f] = failing;
+    Demand { utilisation, failing: Twist::new(Vec3::new(a, b, c), Vec3::new(d, e, f)) }
+}
+
+fn patch(strength: f64, friction: f64, points: &[[f64; 2]], wrench: &Wrench, error: &WrenchError) -> Demand {
+    let least = least_normal_force(wrench, friction, points);
+    let f_z = wrench.force.z;
+    // N* is 1/mu-Lipschitz in the shear, and the failing twist bounds the rest to first order.
+    let v = &least.twist;
+    let spread = 4.0 * (v.linear.abs().dot(&error.force) + v.angular.abs().dot(&error.torque))
+        + ROUNDING * (f_z.abs() + if least.total.upper.is_finite() { least.total.upper } else { 0.0 });
+    let lower = around(least.total.lower - f_z, spread, strength).lower;
+    let upper = around(least.total.upper - f_z, spread, strength).upper;
+    Demand { utilisation: Bracket::new(lower, upper), failing: Twist::new(v.linear / strength, v.angular / strength) }
+}
+
+/// `max(0, value -+ spread) / strength`.
+fn around(value: f64, spread: f64, strength: f64) -> Bracket {
+    Bracket::new((value - spread).max(0.0) / strength, (value + spread).max(0.0) / strength)
+}

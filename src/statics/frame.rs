@@ -1,0 +1,73 @@
+//! Where a link acts: the frame of its force and the two sides it acts on.
+
+use nalgebra::Matrix3;
+
+use crate::spatial::{Twist, Vec3, Wrench};
+
+use super::blocks::{Link, Vertex, ends};
+use super::structure::Structure;
+
+/// The frame of a connection or contact, and whom its wrench acts on.
+#[derive(Clone, Debug)]
+pub(super) struct LinkFrame {
+    /// The child, or the body that a contact's normal points into: gets the wrench.
+    pub plus: Vertex,
+    /// The other side: gets the opposite wrench.
+    pub minus: Vertex,
+    /// Origin in W, in m.
+    pub origin: Vec3,
+    /// Columns are the frame's axes in W.
+    pub axes: Matrix3<f64>,
+}
+
+impl LinkFrame {
+    pub(super) fn new(structure: &Structure, link: Link) -> Self {
+        let [a, b] = ends(structure, link);
+        match link {
+            Link::Connection(i) => {
+                let frame = &structure.connections[i].frame;
+                Self {
+                    plus: b,
+                    minus: a,
+                    origin: frame.translation.vector,
+                    axes: *frame.rotation.to_rotation_matrix().matrix(),
+                }
+            }
+            Link::Contact(i) => {
+                let contact = &structure.contacts[i];
+                Self { plus: a, minus: b, origin: contact.position, axes: axes_along(&contact.normal.normalize()) }
+            }
+        }
+    }
+
+    /// The two sides with the sign of the wrench that each gets.
+    pub(super) fn sides(&self) -> [(Vertex, f64); 2] {
+        [(self.plus, 1.0), (self.minus, -1.0)]
+    }
+
+    /// A wrench in the frame, about its origin, as one in W about `com`.
+    pub(super) fn to_body(&self, local: &Wrench, com: &Vec3) -> Wrench {
+        Wrench::new(self.axes * local.force, self.axes * local.torque).moved(&(self.origin - com))
+    }
+
+    /// Twist of the plus side relative to the minus side at the origin, in the
+    /// frame. `twist` gives a body's twist at its centre of mass in W.
+    pub(super) fn relative_twist(&self, structure: &Structure, twist: impl Fn(usize) -> Twist) -> Twist {
+        let mut relative = Twist::ZERO;
+        for (side, sign) in self.sides() {
+            if let Vertex::Body(i) = side {
+                let here = twist(i).moved(&(self.origin - structure.bodies[i].com));
+                relative.linear += here.linear * sign;
+                relative.angular += here.angular * sign;
+            }
+        }
+        Twist::new(self.axes.tr_mul(&relative.linear), self.axes.tr_mul(&relative.angular))
+    }
+}
+
+/// Orthonormal right-handed axes with `z` as the third.
+fn axes_along(z: &Vec3) -> Matrix3<f64> {
+    let helper = if z.x.abs() < 0.6 { Vec3::x() } else { Vec3::y() };
+    let y = z.cross(&helper).normalize();
+    Matrix3::from_columns(&[y.cross(z), y, *z])
+}

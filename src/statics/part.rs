@@ -1,0 +1,25 @@
+//! The answer for one block.
+
+use crate::spatial::{Twist, Wrench};
+
+use super::assessment::Bracket;
+
+/// What was found out about one block.
+pub(super) enum Part {
+    /// It can stand if its connections are strong enough, or that is not excluded.
+    Stands {
+        utilisation: Bracket,
+        /// Wrench per link of the block, in its frame.
+        wrenches: Vec<Wrench>,
+        /// Utilisation that each of those wrenches demands.
+        demands: Vec<f64>,
+        /// Twist per body of the block that proves the lower bound.
+        mechanism: Vec<Twist>,
+        /// Share of each link in the mechanism's dissipation.
+        shares: Vec<f64>,
+        /// Why the bracket is wider than asked for.
+        undecided_because: Option<String>,
+    },
+    /// No strength helps: the motion per body of the block that proves it.
+    Collapses { mechanism: Vec<Twist> },
+}

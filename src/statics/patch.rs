@@ -1,0 +1,348 @@
+//! The preload that a patch needs to carry a known wrench.
+//!
+//! The contact forces `g_j` of the face's points must add up to the wrench and
+//! the preload, each in its friction cone. Only their total normal force
+//!
+//!     N*(f_x, f_y, tau) = min sum g_j,z   subject to   sum of the g_j's shear,
+//!                         bending and torsion as wanted, |g_j,t| <= mu g_j,z
+//!
+//! depends on the points; the demand is `s = max(0, N* - f_z)`. Without shear
+//! and torsion, N* is where the centre of pressure reaches the hull's nearest
+//! edge. Otherwise it is a cone program in five rows, solved here by a dense
+//! primal-dual interior-point method (Nesterov-Todd direction, Mehrotra's
+//! predictor and corrector), and returned as a bracket from its two sides.
+
+use nalgebra::{Cholesky, Matrix2, SMatrix, SVector, Vector2};
+
+use crate::spatial::{Twist, Vec3, Wrench};
+
+use super::assessment::Bracket;
+use super::hull::{edges, size};
+use super::second_order::{Scaling, divide, dot, product, slack, step_length};
+use super::tolerances::DATA;
+
+/// Iterations after which the interior-point method gives up; it needs 8 to 15.
+const ITERATIONS: usize = 60;
+
+/// Complementarity, relative to the value, at which it stops.
+const GAP: f64 = 1e-14;
+
+type Rows = SVector<f64, 5>;
+
+/// The least total normal force and the twist that proves it.
+pub(super) struct NormalForce {
+    /// Bracket on N* in N; infinite when no preload suffices.
+    pub total: Bracket,
+    /// Relative twist of the child with unit opening velocity at the origin, in
+    /// the connection frame, whose power bounds N* from below.
+    pub twist: Twist,
+}
+
+/// Least total normal force in N that carries the shear, bending and torsion of
+/// `wrench` (its `f_z` plays no part) at points (x, y) with friction `friction`.
+pub(super) fn least_normal_force(wrench: &Wrench, friction: f64, points: &[[f64; 2]]) -> NormalForce {
+    let radius = size(points);
+    let lever = if radius > 0.0 { radius } else { 1.0 };
+    let wanted = Rows::new(
+        wrench.force.x,
+        wrench.force.y,
+        wrench.torque.x / lever,
+        wrench.torque.y / lever,
+        wrench.torque.z / lever,
+    );
+    let scale = wanted.amax();
+    if scale == 0.0 {
+        return NormalForce { total: Bracket::exact(0.0), twist: opening(Vec3::zeros()) };
+    }
+    let negligible = DATA * scale;
+    let in_plane = wanted[0].abs().max(wanted[1].abs()).max(wanted[4].abs());
+    let frictional = friction > 0.0 && in_plane > negligible;
+    let bending = centre_of_pressure(wrench, points);
+    if bending.total.upper.is_infinite() || (in_plane <= negligible && !frictional) {
+        return bending;
+    }
+    if !frictional {
+        // Nothing holds against sliding along a frictionless face.
+        let slide = Twist::new(Vec3::new(-wanted[0], -wanted[1], 0.0), Vec3::z() * (-wanted[4] / lever));
+        return NormalForce { total: Bracket::exact(f64::INFINITY), twist: slide };
+    }
+    let unit: Vec<[f64; 2]> = points.iter().map(|p| [p[0] / lever, p[1] / lever]).collect();
+    let solved = Program::new(friction, &unit, wanted / scale).solve();
+    let y = solved.y;
+    let total = Bracket::new((solved.total.lower * scale).max(bending.total.lower), solved.total.upper * scale);
+    let linear = Vec3::new(-y[0], -y[1], 1.0);
+    let angular = Vec3::new(-y[2], -y[3], -y[4]) / lever;
+    NormalForce { total, twist: Twist::new(linear, angular) }
+}
+
+fn opening(angular: Vec3) -> Twist {
+    Twist::new(Vec3::z(), angular)
+}
+
+/// N* of bending alone: the centre of pressure `(-tau_y, tau_x) / N` must stay
+/// inside every edge of the hull.
+fn centre_of_pressure(wrench: &Wrench, points: &[[f64; 2]]) -> NormalForce {
+    let moment = [-wrench.torque.y, wrench.torque.x];
+    let negligible = DATA * wrench.torque.norm().max(wrench.force.norm() * size(points));
+    let mut worst = NormalForce { total: Bracket::exact(0.0), twist: opening(Vec3::zeros()) };
+    for edge in edges(points) {
+        let pull = edge.normal[0] * moment[0] + edge.normal[1] * moment[1];
+        if pull <= negligible {
+            continue;
+        }
+        // Tilting about the edge opens the face by `1 - n.p / distance` at p.
+        let tilt = Vec3::new(-edge.normal[1], edge.normal[0], 0.0);
+        if edge.distance <= 0.0 {
+            return NormalForce { total: Bracket::exact(f64::INFINITY), twist: Twist::new(Vec3::zeros(), tilt) };
+        }
+        let total = pull / edge.distance;
+        if total > worst.total.upper {
+            worst = NormalForce { total: Bracket::exact(total), twist: opening(tilt / edge.distance) };
+        }
+    }
+    worst
+}
+
+struct Program<'p> {
+    friction: f64,
+    points: &'p [[f64; 2]],
+    wanted: Rows,
+    /// Positive normal forces whose centre of pressure is the origin.
+    pressure: Vec<f64>,
+    /// Factor of `A A'`.
+    gram: Option<Cholesky<f64, nalgebra::Const<5>>>,
+}
+
+struct Solved {
+    y: Rows,
+    total: Bracket,
+}
+
+impl<'p> Program<'p> {
+    fn new(friction: f64, points: &'p [[f64; 2]], wanted: Rows) -> Self {
+        let mut program = Self { friction, points, wanted, pressure: central_pressure(points), gram: None };
+        let identity: Vec<Scaling<3>> =
+            points.iter().map(|_| Scaling::new(&[1.0, 0.0, 0.0], &[1.0, 0.0, 0.0])).collect();
+        program.gram = program.normal_matrix(&identity).cholesky();
+        program
+    }
+
+    /// `A_j z` for one point: what its force `(g_z, g_x / mu, g_y / mu)` adds to the rows.
+    fn rows(&self, point: usize, z: &[f64; 3]) -> Rows {
+        let [px, py] = self.points[point];
+        let (gx, gy) = (self.friction * z[1], self.friction * z[2]);
+        Rows::new(gx, gy, py * z[0], -px * z[0], px * gy - py * gx)
+    }
+
+    /// `A_j' y`.
+    fn columns(&self, point: usize, y: &Rows) -> [f64; 3] {
+        let [px, py] = self.points[point];
+        [py * y[2] - px * y[3], self.friction * (y[0] - py * y[4]), self.friction * (y[1] + px * y[4])]
+    }
+
+    fn solve(&self) -> Solved {
+        let count = self.points.len();
+        let degree = count as f64;
+        let head = [1.0, 0.0, 0.0];
+        let mut x = vec![head; count];
+        let mut s = vec![head; count];
+        let mut y = Rows::zeros();
+        let mut best = Solved { y, total: Bracket::new(0.0, f64::INFINITY) };
+        for _ in 0..ITERATIONS {
+            let missing = self.missing(&x);
+            let dual_missing: Vec<[f64; 3]> = (0..count)
+                .map(|j| {
+                    let column = self.columns(j, &y);
+                    std::array::from_fn(|k| head[k] - column[k] - s[j][k])
+                })
+                .collect();
+            self.keep_bounds(&x, &y, &missing, &mut best);
+            let mu = x.iter().zip(&s).map(|(x, s)| dot(x, s)).sum::<f64>() / degree;
+            let tight = best.total.upper.is_finite() && best.total.width() <= GAP * best.total.upper;
+            if tight || mu <= GAP * GAP {
+                break;
+            }
+            let scalings: Vec<Scaling<3>> = x.iter().zip(&s).map(|(x, s)| Scaling::new(x, s)).collect();
+            let points: Vec<[f64; 3]> = scalings.iter().zip(&x).map(|(w, x)| w.apply(x)).collect();
+            let Some(factor) = self.normal_matrix(&scalings).cholesky() else { break };
+            let newton = |target: &[[f64; 3]]| {
+                let mut rhs = missing;
+                for j in 0..count {
+                    let scaled = scalings[j].apply_inverse(&dual_missing[j]);
+                    let change: [f64; 3] = std::array::from_fn(|k| scaled[k] - target[j][k]);
+                    rhs += self.rows(j, &scalings[j].apply_inverse(&change));
+                }
+                let dy = factor.solve(&rhs);
+                let steps: Vec<([f64; 3], [f64; 3])> = (0..count)
+                    .map(|j| {
+                        let column = self.columns(j, &dy);
+                        let ds: [f64; 3] = std::array::from_fn(|k| dual_missing[j][k] - column[k]);
+                        let scaled = scalings[j].apply_inverse(&ds);
+                        let dx = scalings[j].apply_inverse(&std::array::from_fn(|k| target[j][k] - scaled[k]));
+                        (dx, ds)
+                    })
+                    .collect();
+                (dy, steps)
+            };
+            let affine: Vec<[f64; 3]> = points.iter().map(|p| p.map(|v| -v)).collect();
+            let (_, predictor) = newton(&affine);
+            let reach = step(&x, &s, &predictor, 1.0);
+            let sigma = (1.0 - reach).powi(3);
+            let target: Vec<[f64; 3]> = (0..count)
+                .map(|j| {
+                    let (dx, ds) = &predictor[j];
+                    let second = product(&scalings[j].apply(dx), &scalings[j].apply_inverse(ds));
+                    let square = product(&points[j], &points[j]);
+                    let rhs = std::array::from_fn(|k| sigma * mu * head[k] - square[k] - second[k]);
+                    divide(&points[j], &rhs)
+                })
+                .collect();
+            let (dy, steps) = newton(&target);
+            let length = step(&x, &s, &steps, 0.99);
+            if !(length > 1e-10) {
+                break;
+            }
+            y += dy * length;
+            for j in 0..count {
+                for k in 0..3 {
+                    x[j][k] += length * steps[j].0[k];
+                    s[j][k] += length * steps[j].1[k];
+                }
+            }
+        }
+        best
+    }
+
+    fn missing(&self, x: &[[f64; 3]]) -> Rows {
+        x.iter().enumerate().fold(self.wanted, |rows, (j, z)| rows - self.rows(j, z))
+    }
+
+    fn normal_matrix(&self, scalings: &[Scaling<3>]) -> SMatrix<f64, 5, 5> {
+        let mut matrix = SMatrix::<f64, 5, 5>::zeros();
+        for (j, scaling) in scalings.iter().enumerate() {
+            for row in 0..5 {
+                let column = self.columns(j, &Rows::ith(row, 1.0));
+                let square = scaling.apply_inverse(&scaling.apply_inverse(&column));
+                matrix.set_column(row, &(matrix.column(row) + self.rows(j, &square)));
+            }
+        }
+        (matrix + matrix.transpose()) * 0.5
+    }
+
+    /// Tightens the bracket with what the iterate proves: `y`, shrunk until it
+    /// is admissible, from below; `x`, once it is balanced, from above.
+    fn keep_bounds(&self, x: &[[f64; 3]], y: &Rows, missing: &Rows, best: &mut Solved) {
+        let outside = (0..self.points.len())
+            .map(|j| {
+                let column = self.columns(j, y);
+                -slack(&[1.0 - column[0], -column[1], -column[2]])
+            })
+            .fold(0.0, f64::max);
+        let admissible = y / (1.0 + outside * (1.0 + 1e-15));
+        let lower = self.wanted.dot(&admissible);
+        if lower > best.total.lower {
+            best.total.lower = lower;
+            best.y = admissible;
+        }
+        let upper = self.repaired(x, missing);
+        if upper < best.total.upper {
+            best.total.upper = upper.max(best.total.lower);
+        }
+    }
+
+    /// Total normal force of `x` after its imbalance has been taken up by the
+    /// smallest change of the points' forces, and the cones have been restored by
+    /// pressing harder everywhere at once without shifting the centre of pressure.
+    fn repaired(&self, x: &[[f64; 3]], missing: &Rows) -> f64 {
+        let Some(multipliers) = self.gram.as_ref().map(|gram| gram.solve(missing)) else { return f64::INFINITY };
+        let (mut total, mut pressing) = (0.0, 0.0_f64);
+        for (j, z) in x.iter().enumerate() {
+            let change = self.columns(j, &multipliers);
+            let moved: [f64; 3] = std::array::from_fn(|k| z[k] + change[k]);
+            total += moved[0];
+            pressing = pressing.max(-slack(&moved) / self.pressure[j]);
+        }
+        total + pressing * self.pressure.iter().sum::<f64>()
+    }
+}
+
+/// Positive weights `b_j` with `sum b_j p_j = 0`: those of the analytic centre,
+/// `b_j = 1 / (1 + q.p_j)`. With the origin on the hull's boundary some weights
+/// stay near zero, and bounds that lean on them are loose.
+fn central_pressure(points: &[[f64; 2]]) -> Vec<f64> {
+    let mut q = Vector2::zeros();
+    let weight = |q: &Vector2<f64>, p: &[f64; 2]| 1.0 / (1.0 + q.x * p[0] + q.y * p[1]);
+    for _ in 0..50 {
+        let (mut gradient, mut hessian) = (Vector2::zeros(), Matrix2::zeros());
+        for p in points {
+            let (b, p) = (weight(&q, p), Vector2::new(p[0], p[1]));
+            gradient += p * b;
+            hessian += p * p.transpose() * (b * b);
+        }
+        let Some(step) = hessian.cholesky().map(|factor| factor.solve(&gradient)) else { break };
+        let decrement = gradient.dot(&step).sqrt();
+        q += step / (1.0 + if decrement > 0.25 { decrement } else { 0.0 });
+        if !(decrement > 1e-15) {
+            break;
+        }
+    }
+    points.iter().map(|p| weight(&q, p).max(f64::MIN_POSITIVE)).collect()
+}
+
+fn step(x: &[[f64; 3]], s: &[[f64; 3]], steps: &[([f64; 3], [f64; 3])], shorten: f64) -> f64 {
+    let mut length: f64 = 1.0;
+    for ((x, s), (dx, ds)) in x.iter().zip(s).zip(steps) {
+        length = length.min(step_length(x, dx, shorten)).min(step_length(s, ds, shorten));
+    }
+    length
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SQUARE: [[f64; 2]; 4] = [[0.04, 0.04], [-0.04, 0.04], [-0.04, -0.04], [0.04, -0.04]];
+
+    fn total(force: [f64; 3], torque: [f64; 3], friction: f64) -> Bracket {
+        least_normal_force(&Wrench::new(force.into(), torque.into()), friction, &SQUARE).total
+    }
+
+    #[test]
+    fn pure_bending_moves_the_centre_of_pressure_to_the_edge() {
+        let found = total([0.0; 3], [0.0, 0.2, 0.0], 0.4);
+        assert!(found.contains(5.0) && found.width() < 1e-12, "{found:?}");
+    }
+
+    #[test]
+    fn pure_shear_needs_force_over_friction() {
+        let found = total([3.0, 4.0, 7.0], [0.0; 3], 0.5);
+        assert!((found.lower - 10.0).abs() < 1e-9 && (found.upper - 10.0).abs() < 1e-9, "{found:?}");
+    }
+
+    #[test]
+    fn pure_torsion_uses_the_corners() {
+        // All four corners slide at the radius 0.04 sqrt 2.
+        let found = total([0.0; 3], [0.0, 0.0, 1.0], 0.5);
+        let expected = 1.0 / (0.5 * 0.04 * 2.0_f64.sqrt());
+        assert!((found.lower - expected).abs() < 1e-9 * expected && (found.upper - expected).abs() < 1e-9 * expected);
+    }
+
+    #[test]
+    fn combined_loads_are_bracketed_tightly_by_an_admissible_twist() {
+        let wrench = Wrench::new(Vec3::new(1.0, -2.0, 0.0), Vec3::new(0.1, 0.05, -0.07));
+        let found = least_normal_force(&wrench, 0.4, &SQUARE);
+        assert!(found.total.width() <= 1e-10 * found.total.upper, "{:?}", found.total);
+        for [px, py] in SQUARE {
+            let at = found.twist.at(&Vec3::new(px, py, 0.0));
+            assert!(at.z >= 0.4 * at.xy().norm() - 1e-12);
+        }
+        let power = -found.twist.power(&wrench);
+        assert!((power - found.total.lower).abs() <= 1e-9 * power);
+    }
+
+    #[test]
+    fn nothing_holds_a_frictionless_face_against_shear() {
+        assert!(total([1.0, 0.0, 0.0], [0.0; 3], 0.0).lower.is_infinite());
+        assert_eq!(total([0.0, 0.0, -5.0], [0.0; 3], 0.0), Bracket::exact(0.0));
+    }
+}

@@ -1,0 +1,224 @@
+//! A block that needs optimisation: propose with the conic solver, prove with
+//! the bracket, and ask again where the proof is not tight enough.
+
+use crate::spatial::{Twist, Wrench};
+
+use super::assessment::{Bracket, Question};
+use super::balance::{restore, wrenches};
+use super::blocks::Block;
+use super::bracket::Problem;
+use super::clusters::Clusters;
+use super::collapse;
+use super::conic::{Attempt, Iterate, solve};
+use super::loads::BodyLoad;
+use super::part::Part;
+use super::program::{Program, Purpose};
+use super::structure::Structure;
+use super::tolerances::VALUE_WIDTH;
+
+/// Ways of asking the solver, tried in turn until the bracket is tight enough.
+/// Each bound keeps the best that any of them proved.
+/// A positive inset suits structures that cannot clamp themselves; a negative one
+/// those that can, since it keeps their self-stress bounded.
+const ATTEMPTS: [Attempt; 6] = [
+    Attempt { tolerance: 1e-9, inset: 1e-8, regularization: 1e-8 },
+    Attempt { tolerance: 1e-9, inset: -1e-8, regularization: 1e-8 },
+    Attempt { tolerance: 1e-11, inset: 1e-9, regularization: 1e-9 },
+    Attempt { tolerance: 1e-11, inset: -1e-9, regularization: 1e-9 },
+    Attempt { tolerance: 1e-7, inset: -1e-6, regularization: 1e-7 },
+    Attempt { tolerance: 1e-12, inset: 0.0, regularization: 1e-10 },
+];
+
+/// Ways of asking for a mechanism of fused clusters.
+const FUSED_ATTEMPTS: [Attempt; 2] = [
+    Attempt { tolerance: 1e-9, inset: 1e-8, regularization: 1e-8 },
+    Attempt { tolerance: 1e-11, inset: 1e-9, regularization: 1e-9 },
+];
+
+/// Shares of a safely admissible twist field that are mixed into a tight but
+/// inadmissible one.
+const MIXES: [f64; 4] = [1e-6, 1e-4, 1e-2, 1e-1];
+
+/// Shares of the whole power below which the motion of a link counts as none
+/// when bodies are fused into clusters.
+const FUSED: [f64; 3] = [1e-7, 1e-5, 1e-3];
+
+/// Assesses a block with cycles.
+pub(super) fn assess_block(structure: &Structure, block: &Block, loads: &[BodyLoad], question: Question) -> Part {
+    if block.bodies.iter().all(|&body| loads[body].is_zero()) {
+        return unloaded(block);
+    }
+    let program = Program::new(structure, block, loads, Purpose::Utilisation);
+    let problem = Problem { structure, block, loads, program: &program };
+    let mut best = Best::new(block);
+    for (count, attempt) in ATTEMPTS.iter().enumerate() {
+        if let Some(iterate) = solve(&program, attempt) {
+            best.improve(&problem, &iterate, question);
+        }
+        if best.answers(question) {
+            break;
+        }
+        if count == 0
+            && best.upper.is_infinite()
+            && let Some(mechanism) = collapse::find(structure, block, loads)
+        {
+            return Part::Collapses { mechanism };
+        }
+    }
+    let tight = best.answers(question);
+    Part::Stands {
+        utilisation: Bracket::new(best.lower, best.upper),
+        wrenches: best.wrenches,
+        demands: best.demands,
+        mechanism: best.mechanism,
+        shares: best.shares,
+        undecided_because: (!tight).then(|| {
+            format!(
+                "the conic solver left the bracket [{:.9}, {:.9}] on a block of {} bodies",
+                best.lower,
+                best.upper,
+                block.bodies.len()
+            )
+        }),
+    }
+}
+
+/// Nothing to hold: no force anywhere.
+fn unloaded(block: &Block) -> Part {
+    Part::Stands {
+        utilisation: Bracket::exact(0.0),
+        wrenches: vec![Wrench::ZERO; block.links.len()],
+        demands: vec![0.0; block.links.len()],
+        mechanism: vec![Twist::ZERO; block.bodies.len()],
+        shares: vec![0.0; block.links.len()],
+        undecided_because: None,
+    }
+}
+
+/// The best bounds so far and the fields that prove them.
+struct Best {
+    lower: f64,
+    upper: f64,
+    wrenches: Vec<Wrench>,
+    demands: Vec<f64>,
+    mechanism: Vec<Twist>,
+    shares: Vec<f64>,
+}
+
+impl Best {
+    fn new(block: &Block) -> Self {
+        Self {
+            lower: 0.0,
+            upper: f64::INFINITY,
+            wrenches: vec![Wrench::ZERO; block.links.len()],
+            demands: vec![0.0; block.links.len()],
+            mechanism: vec![Twist::ZERO; block.bodies.len()],
+            shares: vec![0.0; block.links.len()],
+        }
+    }
+
+    fn answers(&self, question: Question) -> bool {
+        match question {
+            Question::Decide(threshold) if self.upper <= threshold || self.lower > threshold => true,
+            _ => {
+                let straddles_one = self.lower <= 1.0 && self.upper > 1.0;
+                let width = VALUE_WIDTH * self.upper.max(1.0);
+                self.upper.is_finite() && self.upper - self.lower <= width && !straddles_one
+            }
+        }
+    }
+
+    fn improve(&mut self, problem: &Problem<'_>, iterate: &Iterate, question: Question) {
+        let twists = problem.program.twists(&iterate.v);
+        if !self.keep_lower(problem, &twists) {
+            self.mix(problem, &twists);
+        }
+        let mut field = wrenches(problem.program, iterate);
+        restore(problem.structure, problem.block, problem.program, problem.loads, iterate, &mut field);
+        if let Some((upper, demands)) = problem.upper_bound(&field, self.unit_mechanism())
+            && upper < self.upper
+        {
+            self.upper = upper;
+            self.wrenches = field;
+            self.demands = demands;
+        }
+        if !self.answers(question) && self.upper.is_finite() {
+            self.fuse(problem, &twists, question);
+        }
+        // Each is proved up to the tolerance on balance; where they cross by
+        // that, the truth lies between them.
+        if self.lower > self.upper {
+            std::mem::swap(&mut self.lower, &mut self.upper);
+        }
+    }
+
+    /// Mixes a share of the mechanism so far, which is admissible, into a twist
+    /// field that is not, but may be tighter.
+    fn mix(&mut self, problem: &Problem<'_>, twists: &[Twist]) {
+        if self.lower == 0.0 {
+            return;
+        }
+        let safe = self.mechanism.clone();
+        for share in MIXES {
+            let mix = |(a, b): (&Twist, &Twist)| Twist::new(a.linear + b.linear * share, a.angular + b.angular * share);
+            let mixed: Vec<Twist> = twists.iter().zip(&safe).map(mix).collect();
+            if self.keep_lower(problem, &mixed) {
+                return;
+            }
+        }
+    }
+
+    /// Lets bodies that hardly move against each other in `twists` move as one,
+    /// and asks for the best mechanism of that kind. Parts that are clamped by
+    /// their own stress have no admissible motion but rest: there the solver's
+    /// twists are noise, which nothing else would make admissible.
+    fn fuse(&mut self, problem: &Problem<'_>, twists: &[Twist], question: Question) {
+        let Problem { structure, block, loads, .. } = *problem;
+        let powers = problem.link_powers(twists);
+        let power: f64 = block.bodies.iter().zip(twists).map(|(&body, v)| v.power(&loads[body].wrench)).sum();
+        for share in FUSED {
+            let clusters = Clusters::new(structure, block, |link, _| powers[link] <= share * power);
+            let Some(reduced) = clusters.reduce(structure, block, loads) else { return };
+            let program = Program::new(&reduced.structure, &reduced.block, &reduced.loads, Purpose::Utilisation);
+            let inner = Problem {
+                structure: &reduced.structure,
+                block: &reduced.block,
+                loads: &reduced.loads,
+                program: &program,
+            };
+            for attempt in &FUSED_ATTEMPTS {
+                let Some(iterate) = solve(&program, attempt) else { continue };
+                let twists = program.twists(&iterate.v);
+                if let Some((lower, inner_shares)) = inner.lower_bound(&twists)
+                    && lower > self.lower
+                {
+                    self.lower = lower;
+                    self.mechanism = clusters.spread(structure, block, &reduced, &twists);
+                    self.shares = vec![0.0; block.links.len()];
+                    for (&origin, share) in reduced.origins.iter().zip(inner_shares) {
+                        self.shares[origin] = share;
+                    }
+                }
+                if self.answers(question) {
+                    return;
+                }
+            }
+        }
+    }
+
+    /// Keeps what `twists` prove; whether they were admissible.
+    fn keep_lower(&mut self, problem: &Problem<'_>, twists: &[Twist]) -> bool {
+        let Some((lower, shares)) = problem.lower_bound(twists) else { return false };
+        if lower > self.lower {
+            self.lower = lower;
+            self.shares = shares;
+            self.mechanism = twists.to_vec();
+        }
+        true
+    }
+
+    /// The mechanism, if it proves anything: its dissipation is about 1.
+    fn unit_mechanism(&self) -> Option<&[Twist]> {
+        (self.lower > 0.0).then_some(&self.mechanism[..])
+    }
+}
