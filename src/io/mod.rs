@@ -9,6 +9,7 @@
 //! that is made from the types in `wire`), names and values on their own
 //! (`read`), and what the core types find unsound (`read::faults`).
 
+mod assembled;
 mod codes;
 mod conform;
 mod diagnostics;
