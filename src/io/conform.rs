@@ -385,3 +385,54 @@ fn found(node: &Node, place: &Place<'_>) -> String {
         Value::Object(_) => "an object".to_string(),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::schema;
+    use super::Schema;
+
+    /// Keywords that are checked, or that say nothing about the form.
+    const KNOWN: [&str; 22] = [
+        "$defs",
+        "$ref",
+        "$schema",
+        "additionalProperties",
+        "anyOf",
+        "const",
+        "default",
+        "description",
+        "enum",
+        "exclusiveMinimum",
+        "format",
+        "items",
+        "maxItems",
+        "maximum",
+        "minItems",
+        "minimum",
+        "oneOf",
+        "properties",
+        "required",
+        "title",
+        "type",
+        "examples",
+    ];
+
+    fn check_keywords(schema: &Schema) {
+        for (keyword, value) in schema.as_object().into_iter().flatten() {
+            assert!(KNOWN.contains(&keyword.as_str()), "the checker does not know `{keyword}`");
+            match (keyword.as_str(), value) {
+                ("properties" | "$defs", Schema::Object(members)) => members.values().for_each(check_keywords),
+                ("oneOf" | "anyOf", Schema::Array(all)) => all.iter().for_each(check_keywords),
+                ("items" | "additionalProperties", inner) => check_keywords(inner),
+                _ => {}
+            }
+        }
+    }
+
+    #[test]
+    fn every_keyword_of_the_schemas_is_understood() {
+        for name in schema::schema_names() {
+            check_keywords(schema::value(name).unwrap());
+        }
+    }
+}
