@@ -4,7 +4,7 @@
 use crate::spatial::{Twist, Wrench};
 
 use super::assessment::{Bracket, Question};
-use super::balance::{restore, wrenches};
+use super::balance::{idle_contacts, restore, wrenches};
 use super::blocks::Block;
 use super::bracket::Problem;
 use super::clusters::Clusters;
@@ -38,6 +38,10 @@ const FUSED_ATTEMPTS: [Attempt; 2] = [
 /// Shares of a safely admissible twist field that are mixed into a tight but
 /// inadmissible one.
 const MIXES: [f64; 4] = [1e-6, 1e-4, 1e-2, 1e-1];
+
+/// Shares of the largest contact force below which a contact is left out, tried
+/// in turn until the rest balances.
+const IDLE: [f64; 4] = [0.0, 1e-6, 1e-4, 1e-2];
 
 /// Shares of the whole power below which the motion of a link counts as none
 /// when bodies are fused into clusters.
@@ -133,14 +137,10 @@ impl Best {
         if !self.keep_lower(problem, &twists) {
             self.mix(problem, &twists);
         }
-        let mut field = wrenches(problem.program, iterate);
-        restore(problem.structure, problem.block, problem.program, problem.loads, iterate, &mut field);
-        if let Some((upper, demands)) = problem.upper_bound(&field, self.unit_mechanism())
-            && upper < self.upper
-        {
-            self.upper = upper;
-            self.wrenches = field;
-            self.demands = demands;
+        for share in IDLE {
+            if self.keep_upper(problem, iterate, share) {
+                break;
+            }
         }
         if !self.answers(question) && self.upper.is_finite() {
             self.fuse(problem, &twists, question);
@@ -150,6 +150,25 @@ impl Best {
         if self.lower > self.upper {
             std::mem::swap(&mut self.lower, &mut self.upper);
         }
+    }
+
+    /// Keeps what the solver's wrenches prove once they balance, without the
+    /// contacts that carry less than `share`; whether they balance.
+    fn keep_upper(&mut self, problem: &Problem<'_>, iterate: &Iterate, share: f64) -> bool {
+        let Problem { structure, block, loads, program } = *problem;
+        let mut field = wrenches(program, iterate);
+        let idle = idle_contacts(block, &field, share);
+        if share > 0.0 && !idle.contains(&true) {
+            return false;
+        }
+        restore(structure, block, program, loads, iterate, &mut field, &idle);
+        let Some((upper, demands)) = problem.upper_bound(&field, self.unit_mechanism()) else { return false };
+        if upper < self.upper {
+            self.upper = upper;
+            self.wrenches = field;
+            self.demands = demands;
+        }
+        true
     }
 
     /// Mixes a share of the mechanism so far, which is admissible, into a twist
