@@ -3,8 +3,10 @@
 //! The contact forces `g_j` of the face's points must add up to the wrench and
 //! the preload, each in its friction cone. Only their total normal force
 //!
-//!     N*(f_x, f_y, tau) = min sum g_j,z   subject to   sum of the g_j's shear,
-//!                         bending and torsion as wanted, |g_j,t| <= mu g_j,z
+//! ```text
+//! N*(f_x, f_y, tau) = min sum g_j,z   subject to   sum of the g_j's shear,
+//!                     bending and torsion as wanted, |g_j,t| <= mu g_j,z
+//! ```
 //!
 //! depends on the points; the demand is `s = max(0, N* - f_z)`. Without shear
 //! and torsion, N* is where the centre of pressure reaches the hull's nearest
