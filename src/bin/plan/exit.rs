@@ -14,6 +14,8 @@ pub enum Exit {
     Undecided,
     /// All problems of the input are listed.
     BadInput,
+    /// The program contradicts itself.
+    Bug,
 }
 
 impl From<Exit> for ExitCode {
@@ -23,6 +25,7 @@ impl From<Exit> for ExitCode {
             Exit::No => 10,
             Exit::Undecided => 11,
             Exit::BadInput => 30,
+            Exit::Bug => 101,
         })
     }
 }

@@ -7,22 +7,33 @@ mod arguments;
 mod check;
 mod exit;
 mod files;
+mod naming;
 mod output;
+mod progress;
 mod schema;
+mod search;
+mod summary;
 mod table;
+mod verify;
 
 use std::process::ExitCode;
 
-use clap::Parser;
+use clap::error::ErrorKind;
+use clap::{CommandFactory, Parser};
 
 use arguments::{Arguments, Command};
 use exit::Exit;
 
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
-    let exit = match arguments.command {
-        Command::Check(check) => check::run(&check),
-        Command::Schema(schema) => schema::run(&schema),
+    let exit = match (arguments.command, arguments.planning) {
+        (Some(Command::Verify(verify)), _) => verify::run(&verify),
+        (Some(Command::Check(check)), _) => check::run(&check),
+        (Some(Command::Schema(schema)), _) => schema::run(&schema),
+        (None, Some(planning)) => search::run(&planning),
+        (None, None) => {
+            Arguments::command().error(ErrorKind::MissingRequiredArgument, "START and GOAL are missing").exit()
+        }
     };
     exit.unwrap_or_else(Exit::from).into()
 }
