@@ -3,19 +3,28 @@
 use crate::robot::{Configuration, Goal};
 use crate::statics::Structure;
 
+/// Largest file that is read, in bytes. A million modules fit.
+pub const LARGEST_FILE: usize = 64 << 20;
+
 /// A text and what to call it in messages.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SourceFile {
     /// Name as messages show it, usually the path as the user gave it.
     pub name: String,
-    /// The bytes, which need not be valid UTF-8 nor valid JSON.
-    pub bytes: Vec<u8>,
+    /// The bytes, which need not be valid UTF-8 nor valid JSON; or why the file
+    /// cannot be read, which every reader reports as a problem of the file.
+    pub bytes: Result<Vec<u8>, String>,
 }
 
 impl SourceFile {
     /// A text under a name.
     pub fn new(name: impl Into<String>, bytes: impl Into<Vec<u8>>) -> Self {
-        Self { name: name.into(), bytes: bytes.into() }
+        Self { name: name.into(), bytes: Ok(bytes.into()) }
+    }
+
+    /// A file that cannot be read, and why.
+    pub fn unreadable(name: impl Into<String>, why: impl Into<String>) -> Self {
+        Self { name: name.into(), bytes: Err(why.into()) }
     }
 }
 

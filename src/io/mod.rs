@@ -28,7 +28,7 @@ mod write;
 
 pub use codes::{CODES, Code};
 pub use diagnostics::{Diagnostic, Diagnostics};
-pub use document::{Checkable, NamedStructure, Problem, Resolve, SourceFile, no_references};
+pub use document::{Checkable, LARGEST_FILE, NamedStructure, Problem, Resolve, SourceFile, no_references};
 pub use plan_document::{Contradiction, PlanDocument};
 pub use read::{read_catalogue, read_checkable, read_configuration, read_plan, read_problem, read_structure};
 pub use schema::{schema, schema_names};

@@ -73,20 +73,22 @@ fn proof(wire: &wire::Proof, outcome: &Outcome) -> Proof {
 }
 
 fn statistics(wire: &wire::Statistics, place: &Place<'_>, findings: &mut Findings) -> Statistics {
-    let certified = wire.certified.unwrap_or_default();
+    let (certified, ruled_out) = (wire.certified.unwrap_or_default(), wire.ruled_out.unwrap_or_default());
+    let others = wire.decided_by_bounds.saturating_sub(ruled_out);
     let statistics = Statistics {
         expanded: wire.expanded,
         states: wire.states.unwrap_or_default(),
-        generated: wire.generated.unwrap_or_else(|| certified.saturating_add(wire.decided_by_bounds)),
+        generated: wire.generated.unwrap_or_else(|| certified.saturating_add(others)),
         certified,
+        ruled_out,
         oracle_solves: wire.oracle_solves,
         bytes: wire.memory_bytes.unwrap_or_default(),
         seconds: wire.seconds.0,
     };
     let decided = statistics.decided_by_bounds();
     if wire.decided_by_bounds != decided {
-        let message = format!("says {}, but {decided} is left of what was generated", wire.decided_by_bounds);
-        let hint = "`generated` less `certified`, but not less than 0".to_string();
+        let message = format!("says {}, but the counts make it {decided}", wire.decided_by_bounds);
+        let hint = "it is `generated` less `certified`, plus `ruled_out`".to_string();
         findings.add(&place.key("decided_by_bounds"), codes::PLAN, message, hint);
     }
     statistics

@@ -143,9 +143,12 @@ pub(crate) struct Statistics {
     /// Transitions whose margin was asked for; null when not counted.
     #[serde(default)]
     pub(crate) certified: Option<u64>,
+    /// Of those, the ones that the moving module alone ruled out; null when not counted.
+    #[serde(default)]
+    pub(crate) ruled_out: Option<u64>,
     /// Exact oracle calls.
     pub(crate) oracle_solves: u64,
-    /// Transitions that bounds decided without a solve.
+    /// Transitions for which the whole robot was never assessed.
     pub(crate) decided_by_bounds: u64,
     /// Peak memory of the search, approximately; null when not counted.
     #[serde(default)]

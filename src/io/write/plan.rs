@@ -69,6 +69,7 @@ fn statistics(statistics: &Statistics) -> wire::Statistics {
         states: Some(statistics.states),
         generated: Some(statistics.generated),
         certified: Some(statistics.certified),
+        ruled_out: Some(statistics.ruled_out),
         oracle_solves: statistics.oracle_solves,
         decided_by_bounds: statistics.decided_by_bounds(),
         memory_bytes: Some(statistics.bytes),
