@@ -12,7 +12,7 @@ use super::collapse;
 use super::conic::{Attempt, Iterate, solve};
 use super::loads::BodyLoad;
 use super::part::Part;
-use super::program::{Program, Purpose};
+use super::program::{Program, Purpose, local_body};
 use super::structure::Structure;
 use super::tolerances::VALUE_WIDTH;
 
@@ -39,6 +39,10 @@ const FUSED_ATTEMPTS: [Attempt; 2] = [
 /// inadmissible one.
 const MIXES: [f64; 4] = [1e-6, 1e-4, 1e-2, 1e-1];
 
+/// Cosine of the angle between two supports' normals from which on they count as
+/// facing each other.
+const OPPOSITE: f64 = 0.5;
+
 /// Shares of the largest contact force below which a contact is left out, tried
 /// in turn until the rest balances.
 const IDLE: [f64; 4] = [0.0, 1e-6, 1e-4, 1e-2];
@@ -55,7 +59,9 @@ pub(super) fn assess_block(structure: &Structure, block: &Block, loads: &[BodyLo
     let program = Program::new(structure, block, loads, Purpose::Utilisation);
     let problem = Problem { structure, block, loads, program: &program };
     let mut best = Best::new(block);
-    for (count, attempt) in ATTEMPTS.iter().enumerate() {
+    // Where supports face each other, begin with the attempt that bounds forces.
+    let first = usize::from(faces_itself(&problem));
+    for (count, attempt) in ATTEMPTS[first..].iter().chain(&ATTEMPTS[..first]).enumerate() {
         if let Some(iterate) = solve(&program, attempt) {
             best.improve(&problem, &iterate, question);
         }
@@ -85,6 +91,19 @@ pub(super) fn assess_block(structure: &Structure, block: &Block, loads: &[BodyLo
             )
         }),
     }
+}
+
+/// Whether two supports of the block press against each other, as floor and
+/// ceiling do, so that it could clamp itself between them.
+fn faces_itself(problem: &Problem<'_>) -> bool {
+    let Problem { block, program, .. } = problem;
+    let outward = program.frames.iter().filter_map(|frame| {
+        let sign =
+            frame.sides().into_iter().find_map(|(side, sign)| local_body(block, side).is_none().then_some(-sign))?;
+        Some(frame.axes.column(2) * sign)
+    });
+    let normals: Vec<_> = outward.collect();
+    normals.first().is_some_and(|first| normals.iter().any(|normal| normal.dot(first) < -OPPOSITE))
 }
 
 /// Nothing to hold: no force anywhere.
