@@ -16,7 +16,9 @@ use crate::reconfigure::saturated::kept;
 use crate::reconfigure::solve::{MARGIN_TOLERANCE, Options, Reduction, solve};
 use crate::reconfigure::step::Step;
 use crate::reconfigure::trace::Trace;
-use crate::robot::{Cell, Configuration, Face, Goal, Matching, ModuleLoad, Obstacle, Shape};
+use crate::robot::{
+    Cell, Configuration, Face, Fault as UnsoundFault, Goal, Matching, ModuleLoad, Obstacle, Part, Shape,
+};
 use crate::spatial::{Pose, Vec3};
 
 use super::{cubes, goal, moves_of, polycube};
@@ -278,7 +280,10 @@ fn obstacles_are_gone_round_or_not_at_all() {
     let target = |gap| goal(under(gap, target.configuration.clone()));
     assert_eq!(solved(&plan(&under(0.001, start.clone()), &target(0.001), &options)).moves, 1);
     let refused = solve(&under(-0.01, start.clone()), &target(-0.01), &options, &mut |_| {});
-    assert!(matches!(refused, Err(Refusal::Overlap { which: Which::Start, .. })), "{refused:?}");
+    let Err(Refusal::Unsound { which: Which::Start, problems }) = refused else { panic!("{refused:?}") };
+    let on_top = Part::Module(2);
+    assert_eq!(problems.len(), 1, "{problems:?}");
+    assert_eq!((problems[0].part, problems[0].fault), (on_top, UnsoundFault::InsideObstacle { obstacle: 0 }));
     let down = cubes(&[[0, 0, 0], [1, 0, 0], [2, 0, 0]], 2);
     let from = cubes(&[[0, 0, 0], [1, 0, 0], [1, 0, 1]], 2);
     let free = plan(&from, &goal(down.clone()), &options);
