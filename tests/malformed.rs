@@ -57,6 +57,9 @@ fn check(kind: &str, path: &PathBuf) -> Result<(), Failed> {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let file = SourceFile::new(name, std::fs::read(path)?);
     let Err(diagnostics) = read(kind, &file) else { return Err("the file is accepted".into()) };
+    if let Some(bare) = diagnostics.items().iter().find(|item| item.hint.is_none()) {
+        return Err(format!("no hint for\n{bare}").into());
+    }
     let (found, expected) = (diagnostics.to_string(), path.with_extension("stderr"));
     if std::env::var_os("STEADFAST_WRITE").is_some() {
         std::fs::write(&expected, &found)?;

@@ -25,7 +25,7 @@ pub(super) struct Form {
 
 /// Checks the value at `place` against the root schema.
 pub(super) fn check(schema: &Schema, place: &Place<'_>, findings: &mut Findings) -> Form {
-    let mut checker = Checker { root: schema, findings, form: Form::default() };
+    let mut checker = Checker { root: schema, findings, form: Form::default(), about: None };
     if let Some(node) = place.node() {
         checker.value(schema, node, place);
     }
@@ -36,6 +36,8 @@ struct Checker<'a> {
     root: &'a Schema,
     findings: &'a mut Findings,
     form: Form,
+    /// What the schema says of the innermost key.
+    about: Option<&'a str>,
 }
 
 impl<'a> Checker<'a> {
@@ -119,7 +121,7 @@ impl<'a> Checker<'a> {
                 self.form.broken = true;
                 let message =
                     format!("expected exactly one of the keys {}, found {}", suggest::listed(&known), members.len());
-                self.findings.add(place, codes::WRONG_LENGTH, message, None);
+                self.findings.add(place, codes::WRONG_LENGTH, message, self.meaning());
             }
         }
     }
@@ -131,6 +133,7 @@ impl<'a> Checker<'a> {
         }
         self.form.broken = true;
         let hint = suggest::closest(text, words.iter().copied()).map(|meant| format!("did you mean `{meant}`?"));
+        let hint = hint.or_else(|| self.meaning());
         let message = format!("expected {}, found \"{}\"", either(&words), clipped(text));
         self.findings.add(place, codes::UNKNOWN_VALUE, message, hint);
     }
@@ -145,11 +148,16 @@ impl<'a> Checker<'a> {
             self.form.broken = true;
             if text.trim_start_matches('-').bytes().all(|byte| byte.is_ascii_digit()) {
                 let message = format!("the whole number {} is out of range", clipped(text));
-                return self.findings.add(place, codes::OUT_OF_RANGE, message, None);
+                return self.findings.add(place, codes::OUT_OF_RANGE, message, self.meaning());
             }
             let message = format!("expected a whole number, found {}", clipped(text));
             let short = number.fract() == 0.0 && number.abs() < 1e9;
-            return self.findings.add(place, codes::WRONG_TYPE, message, short.then(|| format!("write {number:.0}")));
+            return self.findings.add(
+                place,
+                codes::WRONG_TYPE,
+                message,
+                if short { Some(format!("write {number:.0}")) } else { self.meaning() },
+            );
         }
         let limit = |key: &str| schema.get(key).and_then(Schema::as_f64);
         let violated = if let Some(least) = limit("minimum").filter(|least| number < *least) {
@@ -161,7 +169,12 @@ impl<'a> Checker<'a> {
         } else {
             return;
         };
-        self.findings.add(place, codes::OUT_OF_RANGE, format!("must be {violated}, found {}", clipped(text)), None);
+        self.findings.add(
+            place,
+            codes::OUT_OF_RANGE,
+            format!("must be {violated}, found {}", clipped(text)),
+            self.meaning(),
+        );
     }
 
     fn array<'d>(&mut self, schema: &'a Schema, items: &'d [Node], place: &Place<'d>) {
@@ -174,7 +187,7 @@ impl<'a> Checker<'a> {
                 0 => format!("expected {}, found none", self.expected(schema)),
                 count => format!("expected {}, found {count}", self.expected(schema)),
             };
-            self.findings.add(place, codes::WRONG_LENGTH, message, None);
+            self.findings.add(place, codes::WRONG_LENGTH, message, self.meaning());
         }
         if let Some(item_schema) = schema.get("items") {
             for (index, item) in items.iter().enumerate() {
@@ -198,13 +211,15 @@ impl<'a> Checker<'a> {
                 break;
             }
             if let Some(property) = known.and_then(|known| known.get(&*member.key)).or(others) {
+                let outer = std::mem::replace(&mut self.about, description(property));
                 self.value(property, &member.node, &place.member(member));
+                self.about = outer;
                 continue;
             }
             self.form.unknown_keys.insert(member.key_span.start);
             meant.extend(suggest::closest(&member.key, free.iter().copied()));
             let hint = suggest::hint(&member.key, "known keys not yet used", free.iter().copied());
-            let hint = hint.filter(|_| !free.is_empty());
+            let hint = hint.filter(|_| !free.is_empty()).or_else(|| Some("leave it out".to_string()));
             let message = format!("unknown key `{}`", clipped(&member.key));
             self.findings.add_at(place, member.key_span, codes::UNKNOWN_KEY, message, hint);
         }
@@ -228,7 +243,20 @@ impl<'a> Checker<'a> {
     fn wrong_type(&mut self, schema: &'a Schema, node: &Node, place: &Place<'_>) {
         self.form.broken = true;
         let message = format!("expected {}, found {}", self.expected(schema), found(node, place));
-        self.findings.add(place, codes::WRONG_TYPE, message, None);
+        let quoted = matches!(&node.value, Value::String(text) if text.trim().parse::<f64>().is_ok());
+        let quoted = quoted && types(self.resolve(schema)).contains(&"number");
+        let hint = if quoted { Some("write the number without quotes".to_string()) } else { self.meaning() };
+        self.findings.add(place, codes::WRONG_TYPE, message, hint);
+    }
+
+    /// What the key is about, as a hint.
+    fn meaning(&self) -> Option<String> {
+        let Some(about) = self.about else {
+            return Some("`plan schema` shows the form of every format".to_string());
+        };
+        let mut letters = about.trim_end_matches('.').chars();
+        let first = letters.next()?;
+        Some(format!("meaning: {}{}", first.to_lowercase(), letters.as_str()))
     }
 
     fn accepts(&self, schema: &'a Schema, value: &Value) -> bool {
@@ -293,6 +321,11 @@ fn alternatives(schema: &Schema) -> Option<&[Schema]> {
     schema.get("oneOf").or_else(|| schema.get("anyOf")).and_then(Schema::as_array).map(Vec::as_slice)
 }
 
+/// What a schema says that it is for.
+fn description(schema: &Schema) -> Option<&str> {
+    schema.get("description").and_then(Schema::as_str)
+}
+
 fn types(schema: &Schema) -> Vec<&str> {
     match schema.get("type") {
         Some(Schema::String(name)) => vec![name],
@@ -350,5 +383,56 @@ fn found(node: &Node, place: &Place<'_>) -> String {
         Value::String(text) => format!("the string \"{}\"", clipped(text)),
         Value::Array(items) => format!("a list of {}", items.len()),
         Value::Object(_) => "an object".to_string(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::schema;
+    use super::Schema;
+
+    /// Keywords that are checked, or that say nothing about the form.
+    const KNOWN: [&str; 22] = [
+        "$defs",
+        "$ref",
+        "$schema",
+        "additionalProperties",
+        "anyOf",
+        "const",
+        "default",
+        "description",
+        "enum",
+        "exclusiveMinimum",
+        "format",
+        "items",
+        "maxItems",
+        "maximum",
+        "minItems",
+        "minimum",
+        "oneOf",
+        "properties",
+        "required",
+        "title",
+        "type",
+        "examples",
+    ];
+
+    fn check_keywords(schema: &Schema) {
+        for (keyword, value) in schema.as_object().into_iter().flatten() {
+            assert!(KNOWN.contains(&keyword.as_str()), "the checker does not know `{keyword}`");
+            match (keyword.as_str(), value) {
+                ("properties" | "$defs", Schema::Object(members)) => members.values().for_each(check_keywords),
+                ("oneOf" | "anyOf", Schema::Array(all)) => all.iter().for_each(check_keywords),
+                ("items" | "additionalProperties", inner) => check_keywords(inner),
+                _ => {}
+            }
+        }
+    }
+
+    #[test]
+    fn every_keyword_of_the_schemas_is_understood() {
+        for name in schema::schema_names() {
+            check_keywords(schema::value(name).unwrap());
+        }
     }
 }

@@ -47,7 +47,15 @@ impl Findings {
         if file.bytes.len() > LARGEST {
             let message =
                 format!("the file has {} MB, more than the {} MB that are read", file.bytes.len() >> 20, LARGEST >> 20);
-            self.push(name, "", Span::new(0, 0), codes::TOO_LARGE, String::new(), message, None);
+            self.push(
+                name,
+                "",
+                Span::new(0, 0),
+                codes::TOO_LARGE,
+                String::new(),
+                message,
+                Some("is it the right file?".to_string()),
+            );
             return None;
         }
         let text = match std::str::from_utf8(&file.bytes) {

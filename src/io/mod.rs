@@ -9,6 +9,7 @@
 //! that is made from the types in `wire`), names and values on their own
 //! (`read`), and what the core types find unsound (`read::faults`).
 
+mod assembled;
 mod codes;
 mod conform;
 mod diagnostics;
@@ -17,6 +18,7 @@ mod excerpt;
 mod findings;
 mod json;
 mod layout;
+mod planned;
 mod read;
 mod schema;
 mod suggest;
@@ -29,6 +31,7 @@ pub use document::{
     Checkable, NamedStructure, PlanBottleneck, PlanDocument, PlanObjective, PlanOutcome, PlanProof, PlanSequence,
     PlanStatistics, PlannedAction, PlannedStep, Problem, Resolve, SourceFile, no_references,
 };
+pub use planned::Contradiction;
 pub use read::{read_catalogue, read_checkable, read_configuration, read_plan, read_problem, read_structure};
 pub use schema::{schema, schema_names};
 pub use write::{NotFinite, write_check, write_configuration, write_plan, write_structure};

@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use crate::robot::{Cell, Configuration, Face, Occupancy, Placement};
 use crate::statics::{Bracket, InvalidStructure, Question, assess};
 
-use super::assembly::{Assembler, Engagement, Transient};
+use super::assembly::{Assembler, Assembly, Engagement, Transient};
 use super::course::{Course, engagement};
 use super::layout::Bond;
 use super::moves::{Motion, Move};
@@ -51,6 +51,7 @@ pub struct Oracle<'a> {
     assembler: Assembler<'a>,
     pitch: f64,
     solves: AtomicU64,
+    relaxed: AtomicU64,
     fault: Mutex<Option<Vec<InvalidStructure>>>,
 }
 
@@ -61,6 +62,7 @@ impl<'a> Oracle<'a> {
             assembler: Assembler::new(configuration),
             pitch: configuration.pitch(),
             solves: AtomicU64::new(0),
+            relaxed: AtomicU64::new(0),
             fault: Mutex::new(None),
         }
     }
@@ -68,6 +70,11 @@ impl<'a> Oracle<'a> {
     /// Structures assessed so far.
     pub fn solves(&self) -> u64 {
         self.solves.load(Ordering::Relaxed)
+    }
+
+    /// Moves that the moving module alone ruled out, without a solve.
+    pub fn ruled_out(&self) -> u64 {
+        self.relaxed.load(Ordering::Relaxed)
     }
 
     /// What the oracle found wrong with a structure, if it ever did. The margin
@@ -91,29 +98,47 @@ impl<'a> Oracle<'a> {
     /// minus infinity. The result does not depend on the number of threads.
     pub fn of_move(&self, before: Vec<Placement>, bonds: &[Bond], step: Move, rest: &Rest, floor: f64) -> Worst {
         let course = Course::new(before, bonds, step, self.pitch).expect("a legal move has a module and a support");
-        // The state at rest after a slide is the one at its last phase.
-        let settled = match step.motion {
-            Motion::Slide { .. } => None,
-            Motion::Pivot { .. } => Some(self.of_state(&rest.placements, &rest.bonds)),
-        };
-        if let Some(worst) = settled
-            && is_out(&worst, floor)
-        {
-            return worst.cut_short();
+        if let Some(out) = self.rule_out(&course, step, floor) {
+            return out.cut_short();
         }
         match self.of_course(&course, step, floor) {
-            Ok(worst) => settled.map_or(worst, |settled| settled.or_worse(worst)),
             Err(out) => out.cut_short(),
+            // The state at rest after a slide is the one at its last phase.
+            Ok(worst) if matches!(step.motion, Motion::Slide { .. }) => worst,
+            Ok(worst) => {
+                let settled = self.of_state(&rest.placements, &rest.bonds);
+                if is_out(&settled, floor) { settled.cut_short() } else { worst.or_worse(settled) }
+            }
         }
+    }
+
+    /// A state of the move whose margin is below `floor` even if all modules but
+    /// the moving one are held immovably, if there is one.
+    ///
+    /// Holding a body drops its balance from the program, so the utilisation of what is left is
+    /// a lower bound: a problem of one body, in closed form where only a hinge holds it.
+    fn rule_out(&self, course: &Course, step: Move, floor: f64) -> Option<Worst> {
+        if floor == f64::NEG_INFINITY {
+            return None;
+        }
+        let out = initial_phases(step).find_map(|phase| {
+            let state = course.at(phase);
+            let mut assembly = self.assembler.assemble(&state);
+            let moving = state.moving.map(|moving| moving.module);
+            for (module, body) in assembly.structure.bodies.iter_mut().enumerate() {
+                body.fixed |= Some(module) != moving;
+            }
+            let worst = self.read(&assembly, &state, Instant::Phase(phase));
+            (worst.margin.upper < floor).then_some(worst)
+        });
+        self.relaxed.fetch_add(u64::from(out.is_some()), Ordering::Relaxed);
+        out
     }
 
     /// The worst sample, refined; `Err` with the first that is out.
     fn of_course(&self, course: &Course, step: Move, floor: f64) -> Result<Worst, Worst> {
-        let steps = sampling::steps(step);
-        let phase = |i| f64::from(i) / f64::from(steps);
-        // The ends first: they are out most often.
-        let order: Vec<f64> = [steps, 0].into_iter().chain(1..steps).map(phase).collect();
-        let mut samples = self.sample(course, &order, floor)?;
+        let initial: Vec<f64> = initial_phases(step).collect();
+        let mut samples = self.sample(course, &initial, floor)?;
         loop {
             samples.sort_by(|(a, _), (b, _)| a.total_cmp(b));
             let worst = (0..samples.len())
@@ -153,7 +178,10 @@ impl<'a> Oracle<'a> {
     }
 
     fn ask(&self, state: &Transient, instant: Instant) -> Worst {
-        let assembly = self.assembler.assemble(state);
+        self.read(&self.assembler.assemble(state), state, instant)
+    }
+
+    fn read(&self, assembly: &Assembly, state: &Transient, instant: Instant) -> Worst {
         match assess(&assembly.structure, Question::Value) {
             Ok(assessment) => {
                 let weakest = assessment.weakest_connection().map(|i| state.engaged[assembly.connections[i]]);
@@ -167,6 +195,14 @@ impl<'a> Oracle<'a> {
             }
         }
     }
+}
+
+/// The phases sampled before refinement: the middle and the ends first, which are out most often.
+fn initial_phases(step: Move) -> impl Iterator<Item = f64> {
+    let steps = sampling::steps(step);
+    let first = [steps / 2, steps, 0];
+    let others = (1..steps).filter(move |i| !first.contains(i));
+    first.into_iter().chain(others).map(move |i| f64::from(i) / f64::from(steps))
 }
 
 /// The state that a move ends in.

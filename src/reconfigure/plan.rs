@@ -94,6 +94,8 @@ pub struct Statistics {
     pub generated: u64,
     /// Transitions whose margin was asked for; all others were decided by bounds.
     pub certified: u64,
+    /// Of those, the ones that the moving module alone ruled out.
+    pub ruled_out: u64,
     /// Structures that the oracle assessed.
     pub oracle_solves: u64,
     /// Peak memory of the search, in approximate bytes.
@@ -103,9 +105,9 @@ pub struct Statistics {
 }
 
 impl Statistics {
-    /// Transitions that no oracle was asked about.
+    /// Transitions for which the whole robot was never assessed.
     pub fn decided_by_bounds(&self) -> u64 {
-        self.generated.saturating_sub(self.certified)
+        self.generated.saturating_sub(self.certified).saturating_add(self.ruled_out)
     }
 }
 

@@ -15,7 +15,7 @@ use planners::{Space, Transition, Width};
 use super::domain::{Domain, width};
 use super::goal::Arrival;
 use super::layout::{Bond, Layout};
-use super::moves::Move;
+use super::moves::{Motion, Move};
 use super::oracle::Worst;
 
 /// Placements, all connections engaged; or the goal with its own connections.
@@ -60,15 +60,13 @@ impl<'a> Saturated<'a> {
     /// Margin of a move with the detachments before it.
     fn of_move(&self, layout: &Layout, step: Move, floor: f64) -> Worst {
         let bonds = kept(layout, step);
-        if matches!(step.motion, super::moves::Motion::Pivot { .. }) {
-            // While it slides the module is held as after the detachments; while it pivots it is not.
-            let released = self.domain.of_state(layout, &bonds);
-            if released.margin.upper < floor {
-                return released;
-            }
-            return released.or_worse(self.domain.of_move(layout, &bonds, step, floor));
+        let worst = self.domain.of_move(layout, &bonds, step, floor);
+        match step.motion {
+            // When it begins to slide, the module is held as after the detachments.
+            Motion::Slide { .. } => worst,
+            Motion::Pivot { .. } if worst.margin.upper < floor => worst,
+            Motion::Pivot { .. } => self.domain.of_state(layout, &bonds).or_worse(worst),
         }
-        self.domain.of_move(layout, &bonds, step, floor)
     }
 }
 

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
-use planners::{Budget, Progress, Search, Space, Width};
+use planners::{Budget, Limit, PathOf, Progress, Search, Space, Width};
 
 use crate::robot::{Configuration, Goal};
 use crate::statics::Bracket;
@@ -123,6 +123,7 @@ pub fn solve(
         return Err(Refusal::Structure(fault));
     }
     report.statistics.oracle_solves = domain.oracle.solves();
+    report.statistics.ruled_out = domain.oracle.ruled_out();
     report.statistics.seconds = began.elapsed().as_secs_f64();
     Ok(report)
 }
@@ -200,7 +201,7 @@ impl Task<'_> {
         };
         let mut search = Search::new(space, self.search_options()).on_progress(&mut on_progress);
         let outcome = match self.options.objective {
-            Objective::Margin => search.margin(floor),
+            Objective::Margin => best_margin(&mut search, floor),
             Objective::Moves => search.shortest(floor),
         };
         let actions = |path: &planners::Path<S::State, S::Action>| -> Vec<Step> {
@@ -271,6 +272,37 @@ impl Task<'_> {
             moves_at_least: proof.cost_at_least,
         });
         (ending, proof)
+    }
+}
+
+/// The cheapest of the widest paths, with a path in hand early.
+///
+/// A search for the fewest moves is guided by the bound on the moves that are left, one for the
+/// largest margin is not. So a path of fewest moves comes first, and then the
+/// question is only whether a path is wider *by more than the tolerance*, which far
+/// fewer transitions are open to. If none is, the first path is also the
+/// cheapest of the widest: no path that the floor admits is cheaper.
+fn best_margin<S: Space>(search: &mut Search<'_, S>, floor: f64) -> planners::Outcome<PathOf<S>> {
+    let cheapest = search.shortest(floor);
+    let planners::Outcome::Solved { found, proof } = cheapest else { return cheapest };
+    let width = found.width.lower;
+    if width >= search.tie(proof.width_at_most) {
+        let proof = planners::Proof { width_optimal: true, ..proof };
+        return planners::Outcome::Solved { found, proof };
+    }
+    let wider = width + MARGIN_TOLERANCE * width.abs().max(1.0);
+    match search.margin(wider) {
+        planners::Outcome::Impossible => {
+            let proof = planners::Proof { width_at_most: wider, width_optimal: true, ..proof };
+            planners::Outcome::Solved { found, proof }
+        }
+        // Brackets straddle the edge of the tolerance: the engine's own passes tell what they allow.
+        planners::Outcome::OutOfBudget { limit: Limit::Precision, .. } => search.margin(floor),
+        planners::Outcome::OutOfBudget { limit, best: None, proof } => {
+            let proof = planners::Proof { width_optimal: false, cost_optimal: false, ..proof };
+            planners::Outcome::OutOfBudget { limit, best: Some(found), proof }
+        }
+        better => better,
     }
 }
 

@@ -62,7 +62,17 @@ pub(super) fn residuals(
     lacking
 }
 
-/// Corrects `field` in place towards balance.
+/// Contacts that carry less than `share` of the largest contact force: at a knife
+/// edge the others alone hold the structure, and what the solver leaves on these
+/// is noise.
+pub(super) fn idle_contacts(block: &Block, field: &[Wrench], share: f64) -> Vec<bool> {
+    let is_contact = |link: &Link| matches!(link, Link::Contact(_));
+    let forces = || block.links.iter().zip(field).map(|(link, w)| if is_contact(link) { w.force.norm() } else { 0.0 });
+    let largest = forces().fold(0.0, f64::max);
+    block.links.iter().zip(forces()).map(|(link, force)| is_contact(link) && force < share * largest).collect()
+}
+
+/// Corrects `field` in place towards balance. What is `idle` carries nothing.
 pub(super) fn restore(
     structure: &Structure,
     block: &Block,
@@ -70,8 +80,13 @@ pub(super) fn restore(
     loads: &[BodyLoad],
     iterate: &Iterate,
     field: &mut [Wrench],
+    idle: &[bool],
 ) {
-    let metric = metrics(block, program, iterate, field);
+    let mut metric = metrics(block, program, iterate, field);
+    for ((metric, wrench), _) in metric.iter_mut().zip(field.iter_mut()).zip(idle).filter(|(_, idle)| **idle) {
+        *metric = Matrix6::zeros();
+        *wrench = Wrench::ZERO;
+    }
     let levers: Vec<SideMaps> = (0..field.len()).map(|link| scaled_maps(structure, block, program, link)).collect();
     let Some(mut factor) = factorise(block.bodies.len(), &metric, &levers) else { return };
     for _ in 0..ROUNDS {

@@ -22,6 +22,7 @@ use super::loads::BodyLoad;
 use super::program::{Program, Purpose};
 use super::second_order::norm;
 use super::structure::Structure;
+use super::tolerances::DATA;
 
 /// Largest force, as a multiple of the loads, that could still save a structure
 /// whose mechanism violates a contact by rounding.
@@ -63,8 +64,12 @@ pub(super) fn find(structure: &Structure, block: &Block, loads: &[BodyLoad]) -> 
 /// resisting it.
 fn proves(reduced: &Reduced, program: &Program, twists: &[Twist]) -> bool {
     let Reduced { structure, block, loads, .. } = reduced;
-    let power: f64 = block.bodies.iter().map(|&body| twists[body].power(&loads[body].wrench)).sum();
-    if !(power > 0.0) {
+    let (mut power, mut size) = (0.0, 0.0);
+    for (twist, load) in twists.iter().zip(loads) {
+        power += twist.power(&load.wrench);
+        size += twist.linear.abs().dot(&load.force_size) + twist.angular.abs().dot(&load.torque_size);
+    }
+    if !(power > DATA * size) {
         return false;
     }
     block.links.iter().zip(&program.frames).zip(&program.scales.link).all(|((&link, frame), force)| {

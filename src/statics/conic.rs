@@ -36,8 +36,15 @@ pub(super) struct Iterate {
     pub t: f64,
 }
 
+/// Iterations after which the solver gives up; it needs 8 to 25.
+const ITERATIONS: u32 = 60;
+
+/// Size of a scaled variable from which the iterate is a ray, not a point: where a
+/// structure can clamp itself, rewarding forces lets them grow without end.
+const RAY: f64 = 1e9;
+
 /// Solves `program`. `None` when the solver could not even start or returned
-/// something that is not finite.
+/// no point.
 pub(super) fn solve(program: &Program, attempt: &Attempt) -> Option<Iterate> {
     let layout = Layout::new(program);
     let heads = program.groups.iter().filter(|group| group.cone != Cone::Free).count() as f64;
@@ -56,7 +63,7 @@ pub(super) fn solve(program: &Program, attempt: &Attempt) -> Option<Iterate> {
     let mut solver = DefaultSolver::new(&nothing, &objective, &matrix, &limits, &layout.cones, settings).ok()?;
     solver.solve();
     let (x, z) = (&solver.solution.x, &solver.solution.z);
-    if !x.iter().chain(z).all(|value| value.is_finite()) {
+    if !(x.iter().all(|v| v.is_finite()) && z.iter().all(|z| z.abs() <= RAY)) {
         return None;
     }
     let mut variables = vec![0.0; program.columns.len()];
@@ -74,7 +81,7 @@ fn settings(attempt: &Attempt) -> Option<DefaultSettings<f64>> {
         .presolve_enable(false)
         .direct_solve_method("qdldl".to_owned())
         .max_threads(1)
-        .max_iter(120)
+        .max_iter(ITERATIONS)
         .tol_feas(attempt.tolerance)
         .tol_gap_abs(attempt.tolerance)
         .tol_gap_rel(attempt.tolerance)

@@ -4,7 +4,7 @@
 use crate::spatial::{Twist, Wrench};
 
 use super::assessment::{Bracket, Question};
-use super::balance::{restore, wrenches};
+use super::balance::{idle_contacts, restore, wrenches};
 use super::blocks::Block;
 use super::bracket::Problem;
 use super::clusters::Clusters;
@@ -12,7 +12,7 @@ use super::collapse;
 use super::conic::{Attempt, Iterate, solve};
 use super::loads::BodyLoad;
 use super::part::Part;
-use super::program::{Program, Purpose};
+use super::program::{Program, Purpose, local_body};
 use super::structure::Structure;
 use super::tolerances::VALUE_WIDTH;
 
@@ -39,6 +39,14 @@ const FUSED_ATTEMPTS: [Attempt; 2] = [
 /// inadmissible one.
 const MIXES: [f64; 4] = [1e-6, 1e-4, 1e-2, 1e-1];
 
+/// Cosine of the angle between two supports' normals from which on they count as
+/// facing each other.
+const OPPOSITE: f64 = 0.5;
+
+/// Shares of the largest contact force below which a contact is left out, tried
+/// in turn until the rest balances.
+const IDLE: [f64; 4] = [0.0, 1e-6, 1e-4, 1e-2];
+
 /// Shares of the whole power below which the motion of a link counts as none
 /// when bodies are fused into clusters.
 const FUSED: [f64; 3] = [1e-7, 1e-5, 1e-3];
@@ -51,7 +59,9 @@ pub(super) fn assess_block(structure: &Structure, block: &Block, loads: &[BodyLo
     let program = Program::new(structure, block, loads, Purpose::Utilisation);
     let problem = Problem { structure, block, loads, program: &program };
     let mut best = Best::new(block);
-    for (count, attempt) in ATTEMPTS.iter().enumerate() {
+    // Where supports face each other, begin with the attempt that bounds forces.
+    let first = usize::from(faces_itself(&problem));
+    for (count, attempt) in ATTEMPTS[first..].iter().chain(&ATTEMPTS[..first]).enumerate() {
         if let Some(iterate) = solve(&program, attempt) {
             best.improve(&problem, &iterate, question);
         }
@@ -81,6 +91,19 @@ pub(super) fn assess_block(structure: &Structure, block: &Block, loads: &[BodyLo
             )
         }),
     }
+}
+
+/// Whether two supports of the block press against each other, as floor and
+/// ceiling do, so that it could clamp itself between them.
+fn faces_itself(problem: &Problem<'_>) -> bool {
+    let Problem { block, program, .. } = problem;
+    let outward = program.frames.iter().filter_map(|frame| {
+        let sign =
+            frame.sides().into_iter().find_map(|(side, sign)| local_body(block, side).is_none().then_some(-sign))?;
+        Some(frame.axes.column(2) * sign)
+    });
+    let normals: Vec<_> = outward.collect();
+    normals.first().is_some_and(|first| normals.iter().any(|normal| normal.dot(first) < -OPPOSITE))
 }
 
 /// Nothing to hold: no force anywhere.
@@ -133,14 +156,10 @@ impl Best {
         if !self.keep_lower(problem, &twists) {
             self.mix(problem, &twists);
         }
-        let mut field = wrenches(problem.program, iterate);
-        restore(problem.structure, problem.block, problem.program, problem.loads, iterate, &mut field);
-        if let Some((upper, demands)) = problem.upper_bound(&field, self.unit_mechanism())
-            && upper < self.upper
-        {
-            self.upper = upper;
-            self.wrenches = field;
-            self.demands = demands;
+        for share in IDLE {
+            if self.keep_upper(problem, iterate, share) {
+                break;
+            }
         }
         if !self.answers(question) && self.upper.is_finite() {
             self.fuse(problem, &twists, question);
@@ -150,6 +169,25 @@ impl Best {
         if self.lower > self.upper {
             std::mem::swap(&mut self.lower, &mut self.upper);
         }
+    }
+
+    /// Keeps what the solver's wrenches prove once they balance, without the
+    /// contacts that carry less than `share`; whether they balance.
+    fn keep_upper(&mut self, problem: &Problem<'_>, iterate: &Iterate, share: f64) -> bool {
+        let Problem { structure, block, loads, program } = *problem;
+        let mut field = wrenches(program, iterate);
+        let idle = idle_contacts(block, &field, share);
+        if share > 0.0 && !idle.contains(&true) {
+            return false;
+        }
+        restore(structure, block, program, loads, iterate, &mut field, &idle);
+        let Some((upper, demands)) = problem.upper_bound(&field, self.unit_mechanism()) else { return false };
+        if upper < self.upper {
+            self.upper = upper;
+            self.wrenches = field;
+            self.demands = demands;
+        }
+        true
     }
 
     /// Mixes a share of the mechanism so far, which is admissible, into a twist

@@ -1,2 +1,39 @@
-//! x
-fn main() {}
+//! The command line: arguments in, files through the library, reports out.
+//!
+//! Results go to stdout, progress and diagnostics to stderr. Knows no
+//! mechanics and no search; what it prints, the library has found.
+
+mod arguments;
+mod check;
+mod exit;
+mod files;
+mod naming;
+mod output;
+mod progress;
+mod schema;
+mod search;
+mod summary;
+mod table;
+mod verify;
+
+use std::process::ExitCode;
+
+use clap::error::ErrorKind;
+use clap::{CommandFactory, Parser};
+
+use arguments::{Arguments, Command};
+use exit::Exit;
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    let exit = match (arguments.command, arguments.planning) {
+        (Some(Command::Verify(verify)), _) => verify::run(&verify),
+        (Some(Command::Check(check)), _) => check::run(&check),
+        (Some(Command::Schema(schema)), _) => schema::run(&schema),
+        (None, Some(planning)) => search::run(&planning),
+        (None, None) => {
+            Arguments::command().error(ErrorKind::MissingRequiredArgument, "START and GOAL are missing").exit()
+        }
+    };
+    exit.unwrap_or_else(Exit::from).into()
+}

@@ -270,7 +270,8 @@ impl Parser<'_> {
     }
 
     fn unexpected(&self, expected: &str) -> Fault {
-        let hint = if self.at == self.text.len() { "is the file truncated?" } else { "" };
+        let truncated = self.at == self.text.len();
+        let hint = if truncated { "is the file truncated?" } else { "is something missing or doubled just before?" };
         Fault::syntax(self.here(), format!("expected {expected}, found {}", self.found()), hint)
     }
 

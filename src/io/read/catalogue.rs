@@ -150,7 +150,7 @@ fn body(wire: &wire::ModuleType, place: &Place<'_>, findings: &mut Findings) -> 
     let place = place.key("bodies");
     let [body] = wire.bodies.as_slice() else {
         let message = format!("a lattice module has one body, found {}", wire.bodies.len());
-        findings.add(&place, codes::UNSUPPORTED, message, None);
+        findings.add(&place, codes::UNSUPPORTED, message, "join the bodies to one".to_string());
         return None;
     };
     let shape = shape(&body.shape, &place.index(0).key("shape"), findings)?;

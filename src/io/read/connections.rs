@@ -35,7 +35,7 @@ pub(super) fn listed(
 fn check_roll(wire: &wire::RolledConnection, place: &Place<'_>, findings: &mut Findings) {
     if let Some(roll) = wire.roll_deg.filter(|roll| roll.0 % 90.0 != 0.0) {
         let message = format!("faces engage at multiples of 90 degrees, found {}", roll.0);
-        findings.add(&place.key("roll_deg"), codes::OUT_OF_RANGE, message, None);
+        findings.add(&place.key("roll_deg"), codes::OUT_OF_RANGE, message, "write 0, 90, 180 or 270".to_string());
     }
 }
 

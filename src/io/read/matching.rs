@@ -79,7 +79,7 @@ impl Comparison<'_> {
                 }
                 Some(other) if other.module_type != module.module_type => {
                     let message = format!("module `{id}` has another type than in the start; {why}");
-                    findings.add(&place, codes::MODULE_TYPES, message, None);
+                    findings.add(&place, codes::MODULE_TYPES, message, "give it its type in the start".to_string());
                 }
                 Some(_) => {}
             }

@@ -53,14 +53,19 @@ fn check_outcome(wire: &wire::Plan, root: &Place<'_>, findings: &mut Findings) {
     match (wire.outcome, wire.actions.is_some()) {
         (wire::Outcome::Solved, false) => {
             let message = "a solved problem has a plan, but `actions` is missing";
-            findings.add(&root.key("outcome"), codes::PLAN, message, None);
+            findings.add(
+                &root.key("outcome"),
+                codes::PLAN,
+                message,
+                "an empty list is the plan that does nothing".to_string(),
+            );
         }
         (wire::Outcome::Impossible, true) => {
             findings.add(
                 &root.key("outcome"),
                 codes::PLAN,
                 "an impossible problem has no plan, but there are `actions`",
-                None,
+                "leave the actions out".to_string(),
             );
         }
         _ => {}
@@ -82,7 +87,7 @@ fn sequence(
         let place = place.key("bottleneck");
         if let Some(action) = wire.action.filter(|action| *action as usize >= actions.len()) {
             let message = format!("there is no action {action}, only {} of them, counted from 0", actions.len());
-            findings.add(&place.key("action"), codes::PLAN, message, None);
+            findings.add(&place.key("action"), codes::PLAN, message, "null means the start itself".to_string());
         }
         let connection = wire.connection.as_ref().map(|ports| pair(ports, modules, &place.key("connection"), findings));
         let action = wire.action.map(|action| action as usize);
@@ -115,11 +120,21 @@ fn step(wire: &wire::Action, modules: &Names<'_>, place: &Place<'_>, findings: &
             let support = modules.find(support, &place.key("support"), findings);
             if module.is_some() && module == support {
                 let message = "a module cannot support itself";
-                findings.add(&place.key("support"), codes::SELF_CONNECTION, message, None);
+                findings.add(
+                    &place.key("support"),
+                    codes::SELF_CONNECTION,
+                    message,
+                    "name the neighbour that carries the hinge".to_string(),
+                );
             }
             if !matches!(angle_deg, 90 | 180) {
                 let message = format!("a cube pivots by 90 or 180 degrees, found {angle_deg}");
-                findings.add(&place.key("angle_deg"), codes::OUT_OF_RANGE, message, None);
+                findings.add(
+                    &place.key("angle_deg"),
+                    codes::OUT_OF_RANGE,
+                    message,
+                    "the direction is in `axis`".to_string(),
+                );
             }
             let quarter_turns = if *angle_deg == 90 { 1 } else { 2 };
             let axis = face(*axis);

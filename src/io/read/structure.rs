@@ -119,7 +119,12 @@ impl Reader<'_> {
         let against = self.anchor(&wire.against, &place.key("against"), findings);
         if body.is_some() && against == body.map(Anchor::Body) {
             let message = format!("`{}` cannot touch itself", wire.body);
-            findings.add(&place.key("against"), codes::SELF_CONNECTION, message, None);
+            findings.add(
+                &place.key("against"),
+                codes::SELF_CONNECTION,
+                message,
+                "name another body, or `world`".to_string(),
+            );
         }
         let normal = normal(wire.normal, &place.key("normal"), findings);
         let (position, friction) = (vector(wire.position_m), wire.friction.0);

@@ -46,9 +46,9 @@ impl Replay {
 
 /// Replays a plan from `start` and checks everything that it claims.
 ///
-/// `required` is the margin that every transient state must have. On the grid a
-/// move may fall below a positive requirement by the [sampling tolerance](claims::tolerance), but
-/// never below 0, since the planner samples elsewhere; a state at rest may not.
+/// `required` is the margin that every transient state must have. The planner samples a move at
+/// other phases, so on this grid a move may fall below a positive requirement by 5 % of the
+/// utilisation that it allows, but never below 0; a state at rest may not at all.
 /// A plan that claims no margins (made by geometry alone) is held to the same requirement.
 ///
 /// After an action that is not legal the rest cannot be replayed, and is not.

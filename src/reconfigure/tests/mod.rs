@@ -3,6 +3,7 @@
 mod heuristics;
 mod motions;
 mod planning;
+mod tampering;
 
 use std::sync::Arc;
 

@@ -6,19 +6,23 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use proptest::prelude::*;
 
+use crate::reconfigure::domain::Domain;
+use crate::reconfigure::moves::{Motion, Move};
 use crate::reconfigure::plan::{Limit, Objective, Outcome, Plan, Report};
-use crate::reconfigure::problem::{bonds, cells};
+use crate::reconfigure::problem::{Problem, bonds, cells};
 use crate::reconfigure::refusal::{Impossible, Refusal, Which};
 use crate::reconfigure::replay::{Fault, replay};
+use crate::reconfigure::saturated::kept;
 use crate::reconfigure::solve::{MARGIN_TOLERANCE, Options, Reduction, solve};
 use crate::reconfigure::step::Step;
-use crate::robot::{Cell, Configuration, Goal, Matching, ModuleLoad, Obstacle, Shape};
+use crate::reconfigure::trace::Trace;
+use crate::robot::{Cell, Configuration, Face, Goal, Matching, ModuleLoad, Obstacle, Shape};
 use crate::spatial::{Pose, Vec3};
 
 use super::{cubes, goal, moves_of, polycube};
 
 /// Plans, and replays every plan that comes back.
-fn plan(start: &Configuration, goal: &Goal, options: &Options) -> Report {
+pub fn plan(start: &Configuration, goal: &Goal, options: &Options) -> Report {
     let report = solve(start, goal, options, &mut |_| {}).unwrap();
     for plan in report.plan.iter().chain(&report.alternatives) {
         let required = report.required.unwrap_or(f64::NEG_INFINITY);
@@ -30,7 +34,7 @@ fn plan(start: &Configuration, goal: &Goal, options: &Options) -> Report {
     report
 }
 
-fn solved(report: &Report) -> &Plan {
+pub fn solved(report: &Report) -> &Plan {
     assert_eq!(report.outcome, Outcome::Solved, "{report:#?}");
     report.plan.as_ref().unwrap()
 }
@@ -124,6 +128,24 @@ proptest! {
         }
     }
 
+    /// Stopping early, and ruling out by the moving module alone, never
+    /// change on which side of a floor a move is.
+    #[test]
+    fn a_floor_decides_as_the_full_margin_does(filled in polycube(6), choice in any::<usize>(), floor in 0.0..1.0_f64) {
+        let state = cubes(&filled, 1);
+        let problem = Problem::new(&state, &goal(state.clone())).unwrap();
+        let domain = Domain::new(&problem, true);
+        let moves = domain.moves(problem.start_layout());
+        let Some(&step) = moves.get(choice % moves.len().max(1)) else { return Ok(()) };
+        let of = |floor| domain.of_move(problem.start_layout(), &kept(problem.start_layout(), step), step, floor).margin;
+        let (full, decided) = (of(f64::NEG_INFINITY), of(floor));
+        if full.upper < floor || full.upper == f64::NEG_INFINITY {
+            prop_assert!(decided.upper < floor);
+        } else {
+            prop_assert_eq!(decided, full);
+        }
+    }
+
     /// Engaging one more connection never lowers the margin of a state.
     #[test]
     fn attaching_is_never_a_loss(filled in polycube(7), keep in any::<u32>(), latched in any::<bool>()) {
@@ -164,115 +186,9 @@ fn plans_do_not_depend_on_the_number_of_threads() {
 }
 
 /// Four cubes, the first one held: a tower becomes a row.
-fn tower_to_row() -> (Configuration, Goal) {
+pub fn tower_to_row() -> (Configuration, Goal) {
     let start = cubes(&[[0, 0, 0], [0, 0, 1], [0, 0, 2], [1, 0, 0]], 1);
     (start, goal(cubes(&[[0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 0, 0]], 1)))
-}
-
-/// A verified plan of [`tower_to_row`].
-fn sample_plan() -> (Configuration, Goal, Plan) {
-    let (start, target) = tower_to_row();
-    let report = plan(&start, &target, &Options::default());
-    let best = solved(&report).clone();
-    assert!(best.moves >= 3 && best.actions.len() > 4, "{best:#?}");
-    (start, target, best)
-}
-
-#[test]
-fn a_plan_without_one_of_its_actions_is_rejected() {
-    let (start, target, best) = sample_plan();
-    for removed in 0..best.actions.len() {
-        let mut tampered = best.clone();
-        tampered.actions.remove(removed);
-        let replayed = replay(&start, &target, &tampered, 0.0).unwrap();
-        assert!(!replayed.is_verified(), "without action {removed}");
-    }
-}
-
-#[test]
-fn swapped_actions_that_lose_support_are_rejected() {
-    let (start, target, best) = sample_plan();
-    let mut losses = 0;
-    for at in 1..best.actions.len() {
-        let mut tampered = best.clone();
-        tampered.actions.swap(at - 1, at);
-        let replayed = replay(&start, &target, &tampered, 0.0).unwrap();
-        let both_moves = [at - 1, at].iter().all(|&i| best.actions[i].action.is_move());
-        let lost = replayed
-            .failures
-            .iter()
-            .any(|f| matches!(f.fault, Fault::NotHeld | Fault::NotReleased | Fault::NoSupport | Fault::Disconnected));
-        losses += usize::from(lost);
-        assert!(!replayed.is_verified() || !both_moves, "swapped {at}");
-    }
-    assert!(losses > 0, "some swap loses a support");
-}
-
-#[test]
-fn a_plan_for_stronger_connectors_is_rejected() {
-    // Faces limit what hangs on a wall, hinges what comes down from a tower.
-    let wall = [[0, 0, 3], [0, 0, 4], [0, 0, 5]];
-    let hanging = |cell: Cell| cubes(&[&wall[..], &[cell]].concat(), 3);
-    let (start, target) = (hanging([1, 0, 5]), goal(hanging([1, 0, 3])));
-    let slides = solved(&plan(&start, &target, &Options::default())).clone();
-    let tower = tower_to_row();
-    let pivots = solved(&plan(&tower.0, &tower.1, &Options::default())).clone();
-    for (start, target, best, connector) in [(start, target, slides, 0), (tower.0, tower.1, pivots, 1)] {
-        let mut catalogue = (*start.catalogue).clone();
-        halve(&mut catalogue.connectors[connector]);
-        let catalogue = Arc::new(catalogue);
-        let (mut start, mut target) = (start.clone(), target.clone());
-        start.catalogue = Arc::clone(&catalogue);
-        target.configuration.catalogue = catalogue;
-        let replayed = replay(&start, &target, &best, 0.0).unwrap();
-        let differs = |f: &crate::reconfigure::replay::Failure| matches!(f.fault, Fault::MarginDiffers { .. });
-        assert!(replayed.failures.iter().any(differs), "connector {connector}: {:?}", replayed.failures);
-    }
-}
-
-/// Half the strength, and half of all limits that go with it.
-fn halve(connector: &mut crate::statics::Connector) {
-    connector.strength /= 2.0;
-    if let crate::statics::Model::Box { shear, tension, compression, bending, torsion } = &mut connector.model {
-        for limit in shear.iter_mut().chain(bending).chain([tension, compression, torsion]) {
-            *limit /= 2.0;
-        }
-    }
-}
-
-#[test]
-fn altered_poses_and_claims_are_rejected() {
-    let (start, target, best) = sample_plan();
-    let rejected = |tampered: &Plan, what: &str| {
-        assert!(!replay(&start, &target, tampered, 0.0).unwrap().is_verified(), "{what}");
-    };
-    for at in 0..best.actions.len() {
-        use crate::reconfigure::Action;
-        let mut tampered = best.clone();
-        match &mut tampered.actions[at].action {
-            Action::Slide { to, .. } | Action::Pivot { to, .. } => to[0] += 1,
-            Action::Attach(_) | Action::Detach(_) => continue,
-        }
-        rejected(&tampered, "another cell");
-    }
-    let mut tampered = best.clone();
-    tampered.moves += 1;
-    rejected(&tampered, "another number of moves");
-    let mut tampered = best.clone();
-    tampered.margin.as_mut().unwrap().lower += 0.01;
-    rejected(&tampered, "a larger margin");
-    let mut tampered = best.clone();
-    tampered.bottleneck.as_mut().unwrap().phase = 0.123;
-    rejected(&tampered, "another bottleneck");
-    let mut tampered = best.clone();
-    tampered.actions[1].margin.as_mut().unwrap().upper += 0.01;
-    rejected(&tampered, "a larger margin of one action");
-    let mut elsewhere = start.clone();
-    elsewhere.modules[3].placement.cell = [2, 0, 0];
-    assert!(replay(&elsewhere, &target, &best, 0.0).is_err(), "a start that is not what was connected");
-    let other_goal = goal(cubes(&[[0, 0, 0], [1, 0, 0], [2, 0, 0], [2, 1, 0]], 1));
-    let replayed = replay(&start, &other_goal, &best, 0.0).unwrap();
-    assert_eq!(replayed.failures.last().unwrap().fault, Fault::PlacementsDiffer);
 }
 
 /// Under 2.5 times the gravity a hinge cannot lift a cube, though faces hold it.
@@ -461,4 +377,14 @@ fn progress_is_reported() {
 fn bonds_and_connections_name_the_same_faces() {
     let state = cubes(&[[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 0, 1]], 0);
     assert_eq!(bonds(&state), cells(&state).touching());
+}
+
+#[test]
+fn a_trace_forgets_the_order_of_independent_moves_only() {
+    let slide = |from, direction| Move { from, motion: Motion::Slide { direction } };
+    let (near, far) = (slide([0, 0, 1], Face::PosX), slide([7, 0, 1], Face::NegX));
+    let next = slide([1, 0, 1], Face::PosX);
+    assert_eq!(Trace::new([near, far]), Trace::new([far, near]));
+    assert_eq!(Trace::new([near, next, far]), Trace::new([far, near, next]));
+    assert_ne!(Trace::new([near, next]), Trace::new([next, near]));
 }

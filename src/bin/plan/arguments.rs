@@ -1,0 +1,122 @@
+//! What can be asked on the command line.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+/// Reconfiguration planner for modular robots in which every transient state is proved stable
+#[derive(Debug, Parser)]
+#[command(
+    name = "plan",
+    version,
+    after_help = EXIT_CODES,
+    args_conflicts_with_subcommands = true,
+    subcommand_negates_reqs = true
+)]
+pub struct Arguments {
+    #[command(subcommand)]
+    pub command: Option<Command>,
+    #[command(flatten)]
+    pub planning: Option<PlanningArguments>,
+}
+
+const EXIT_CODES: &str = "Exit codes: 0 plan found, structure stable, plan verified; 2 usage; 10 proved that no plan \
+exists, structure unstable, plan does not verify; 11 not decided within the limits; 30 bad input; 101 a bug";
+
+/// What `plan START GOAL` can be asked.
+#[derive(Debug, Args)]
+pub struct PlanningArguments {
+    /// Where the robot is: a configuration/1 file
+    #[arg(required = true)]
+    pub start: PathBuf,
+    /// Where it is to be: a configuration/1 file, which may leave out what the start says
+    #[arg(required = true)]
+    pub goal: PathBuf,
+    /// What makes one plan better than another
+    #[arg(long, value_enum, default_value_t = ObjectiveArgument::Margin)]
+    pub objective: ObjectiveArgument,
+    /// Margin that every transient state must have [default: what the start requires, or 0]
+    #[arg(long, value_name = "X", value_parser = margin)]
+    pub min_margin: Option<f64>,
+    /// How many plans to find; they differ in more than the order of independent moves
+    #[arg(long, value_name = "K", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub plans: u32,
+    /// Seconds after which to stop with the best plan so far
+    #[arg(long, value_name = "S", value_parser = seconds)]
+    pub time_limit: Option<Duration>,
+    /// Threads for the oracle [default: all cores]; the plan does not depend on it
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Seed; the search draws no random numbers, so every seed gives the same plan
+    #[arg(long, value_name = "N")]
+    pub seed: Option<u64>,
+    /// Print a plan/1 document (and errors as an errors/1 document)
+    #[arg(long)]
+    pub json: bool,
+    /// Write the plan/1 document to a file
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+    /// Plan by geometry alone, for comparison; `plan verify` tells where such a plan breaks
+    #[arg(long)]
+    pub ignore_stability: bool,
+    /// Search single attach, detach and move actions instead of whole moves: the slow reference
+    #[arg(long)]
+    pub primitive: bool,
+}
+
+/// `--objective`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ObjectiveArgument {
+    /// The largest worst-case margin, then the fewest moves
+    Margin,
+    /// The fewest moves with at least the required margin
+    Moves,
+}
+
+fn margin(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() && value <= 1.0 => Ok(value),
+        Ok(_) => Err("a margin is at most 1, which only an unloaded robot has".to_string()),
+        Err(error) => Err(error.to_string()),
+    }
+}
+
+fn seconds(text: &str) -> Result<Duration, String> {
+    let value: f64 = text.parse().map_err(|error: std::num::ParseFloatError| error.to_string())?;
+    Duration::try_from_secs_f64(value).map_err(|error| error.to_string())
+}
+
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Replay a plan from its start and check everything that it claims
+    Verify(VerifyArguments),
+    /// Say whether a structure or a configuration is stable, and by what margin
+    Check(CheckArguments),
+    /// Print the JSON Schema of a format, or the names of all formats
+    Schema(SchemaArguments),
+}
+
+#[derive(Debug, Args)]
+pub struct CheckArguments {
+    /// A structure/1 or configuration/1 file; `-` reads standard input
+    pub file: PathBuf,
+    /// Print a check/1 document (and errors as an errors/1 document)
+    #[arg(long)]
+    pub json: bool,
+    /// How many of the most loaded connections to show
+    #[arg(long, value_name = "N", default_value_t = 10)]
+    pub top: usize,
+}
+
+#[derive(Debug, Args)]
+pub struct VerifyArguments {
+    /// A plan/1 file; `-` reads standard input
+    pub plan: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub struct SchemaArguments {
+    /// Name of the format; without it, all names are listed
+    pub name: Option<String>,
+}

@@ -1,0 +1,159 @@
+//! `plan check FILE`
+
+use std::fmt::Write;
+use std::io;
+use std::time::Instant;
+
+use steadfast::io::{Checkable, NamedStructure, read_checkable, write_check};
+use steadfast::statics::{Assessment, Bracket, Question, Verdict, assess};
+
+use crate::arguments::CheckArguments;
+use crate::exit::Exit;
+use crate::table::table;
+use crate::{files, output};
+
+/// Assesses a file and reports on it.
+///
+/// # Errors
+/// The output cannot be written.
+pub fn run(arguments: &CheckArguments) -> io::Result<Exit> {
+    let file = match files::read(&arguments.file) {
+        Ok(file) => file,
+        Err(problem) => {
+            output::message(&problem)?;
+            return Ok(Exit::BadInput);
+        }
+    };
+    let named = match read_checkable(&file, &files::resolve) {
+        Ok(Checkable::Structure(named)) => named,
+        Ok(Checkable::Configuration(configuration)) => NamedStructure::of_configuration(&configuration),
+        Err(diagnostics) => return output::bad_input(&diagnostics, arguments.json),
+    };
+    let clock = Instant::now();
+    let answer = match assess(&named.structure, Question::Value) {
+        Ok(answer) => answer,
+        Err(problems) => {
+            for problem in problems {
+                output::message(&format!("{}: {}: {}", file.name, problem.place, problem.problem))?;
+            }
+            return Ok(Exit::BadInput);
+        }
+    };
+    let seconds = clock.elapsed().as_secs_f64();
+    if arguments.json {
+        match write_check(&named, &answer, seconds) {
+            Ok(text) => output::result(&text)?,
+            Err(problem) => {
+                output::message(&format!("{}: {problem}", file.name))?;
+                return Ok(Exit::Undecided);
+            }
+        }
+    } else {
+        output::result(&report(&named, &answer, arguments.top, seconds))?;
+    }
+    Ok(match answer.verdict {
+        Verdict::Stable => Exit::Yes,
+        Verdict::InternallyUnstable | Verdict::WholeBodyUnstable => Exit::No,
+        Verdict::Undecided => Exit::Undecided,
+    })
+}
+
+fn report(named: &NamedStructure, answer: &Assessment, top: usize, seconds: f64) -> String {
+    let mut text = verdict(answer);
+    if answer.verdict != Verdict::WholeBodyUnstable {
+        let _ = writeln!(text, "margin       {}", shown(answer.margin()));
+        let _ = writeln!(text, "utilisation  {}", shown(answer.utilisation));
+        strengths(&mut text, named, answer);
+        loaded(&mut text, named, answer, top);
+    }
+    left_out(&mut text, named, answer, seconds);
+    text
+}
+
+fn verdict(answer: &Assessment) -> String {
+    match answer.verdict {
+        Verdict::Stable => "STABLE: every connection holds\n".to_string(),
+        Verdict::InternallyUnstable => "INTERNALLY UNSTABLE: some connection must break\n".to_string(),
+        Verdict::WholeBodyUnstable => {
+            "WHOLE-BODY UNSTABLE: it tips, slides or falls, however strong the connections\n".to_string()
+        }
+        Verdict::Undecided => {
+            let why = answer.undecided_because.as_deref().unwrap_or("the bracket straddles the limit");
+            format!("UNDECIDED: {why}\n")
+        }
+    }
+}
+
+/// A bracket in as many digits as it proves.
+fn shown(bracket: Bracket) -> String {
+    if bracket.lower == bracket.upper {
+        return format!("{:.6}", bracket.lower);
+    }
+    if bracket.width() < 5e-7 {
+        return format!("{:.6}  (proved within {:.0e})", (bracket.lower + bracket.upper) / 2.0, bracket.width());
+    }
+    format!("between {:.9} and {:.9}", bracket.lower, bracket.upper)
+}
+
+fn strengths(text: &mut String, named: &NamedStructure, answer: &Assessment) {
+    let used = |index: usize| named.structure.connections.iter().any(|connection| connection.connector == index);
+    let rows: Vec<_> = named
+        .structure
+        .connectors
+        .iter()
+        .enumerate()
+        .filter(|(index, _)| used(*index) && answer.utilisation.upper.is_finite())
+        .map(|(_, connector)| {
+            let required = connector.strength * answer.utilisation.upper;
+            vec![connector.name.clone(), format!("{:.4}", connector.strength), format!("{required:.4}")]
+        })
+        .collect();
+    if !rows.is_empty() {
+        let _ = write!(text, "\n{}", table(&["connector", "rated N", "required N"], &rows));
+    }
+}
+
+fn loaded(text: &mut String, named: &NamedStructure, answer: &Assessment, top: usize) {
+    let mut order: Vec<_> = (0..answer.connections.len()).collect();
+    let utilisation = |index: &usize| answer.connections[*index].utilisation;
+    order.sort_by(|a, b| utilisation(b).total_cmp(&utilisation(a)).then(a.cmp(b)));
+    let rows: Vec<_> = order
+        .iter()
+        .take(top)
+        .map(|&index| {
+            let state = &answer.connections[index];
+            let norm = |vector: steadfast::spatial::Vec3| format!("{:.4}", vector.norm());
+            vec![
+                named.connections[index].clone(),
+                format!("{:.4}", state.utilisation),
+                norm(state.wrench.force),
+                norm(state.wrench.torque),
+                if state.critical { "critical" } else { "" }.to_string(),
+            ]
+        })
+        .collect();
+    if !rows.is_empty() {
+        let _ = writeln!(text, "\nthe most loaded of {} connections", order.len());
+        text.push_str(&table(&["connection", "utilisation", "force N", "torque N m", ""], &rows));
+    }
+}
+
+fn left_out(text: &mut String, named: &NamedStructure, answer: &Assessment, seconds: f64) {
+    let (left_out, structure) = (&answer.left_out, &named.structure);
+    let _ = writeln!(
+        text,
+        "\n{} of {} connections and {} of {} contacts in closed form; {} of {} bodies fixed;",
+        left_out.closed_form_connections,
+        structure.connections.len(),
+        left_out.closed_form_contacts,
+        structure.contacts.len(),
+        left_out.fixed_bodies,
+        structure.bodies.len(),
+    );
+    let solved = match left_out.solved_blocks {
+        0 => "nothing had to be solved".to_string(),
+        1 => format!("one block of {} bodies solved", left_out.largest_block_bodies),
+        blocks => format!("{blocks} blocks solved, the largest of {} bodies", left_out.largest_block_bodies),
+    };
+    let _ = writeln!(text, "{solved}; {:.2} ms", seconds * 1e3);
+}

@@ -1,0 +1,143 @@
+//! `plan START GOAL`
+
+use std::io;
+use std::path::Path;
+use std::process;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use steadfast::io::{PlanDocument, Problem, read_problem, write_plan};
+use steadfast::reconfigure::replay::{Replay, replay};
+use steadfast::reconfigure::{Event, Objective, Options, Outcome, Reduction, Refusal, Report, solve};
+
+use crate::arguments::{ObjectiveArgument, PlanningArguments};
+use crate::exit::Exit;
+use crate::progress::ProgressLine;
+use crate::summary::summary;
+use crate::{files, output};
+
+/// Exit code of a program that a second Ctrl-C ended at once.
+const INTERRUPTED: i32 = 130;
+
+/// Plans, verifies what was found, and reports.
+///
+/// # Errors
+/// The output cannot be written.
+pub fn run(arguments: &PlanningArguments) -> io::Result<Exit> {
+    let problem = match read(arguments)? {
+        Ok(problem) => problem,
+        Err(exit) => return Ok(exit),
+    };
+    let report = match search(arguments, &problem) {
+        Ok(Ok(report)) => report,
+        Ok(Err(refusal)) => {
+            output::message(&format!("error: {refusal}"))?;
+            return Ok(Exit::BadInput);
+        }
+        Err(trouble) => {
+            output::message(&format!("error: {trouble}"))?;
+            return Ok(Exit::BadInput);
+        }
+    };
+    let check = match check(&problem, &report) {
+        Ok(check) => check,
+        Err(refusal) => {
+            output::message(&format!("error: {refusal}"))?;
+            return Ok(Exit::Bug);
+        }
+    };
+    let document = match write_plan(&PlanDocument::new(problem.clone(), &report)) {
+        Ok(document) => document,
+        Err(trouble) => {
+            output::message(&format!("bug: the plan cannot be written: {trouble}"))?;
+            return Ok(Exit::Bug);
+        }
+    };
+    if let Some(out) = &arguments.out
+        && let Err(trouble) = save(out, &document)
+    {
+        output::message(&format!("error: {}: {trouble}", out.display()))?;
+        output::result(&document)?;
+        return Ok(Exit::BadInput);
+    }
+    let text = if arguments.json { document } else { summary(&problem, &report, check.as_ref()) };
+    output::result(&text)?;
+    if let Some(check) = &check
+        && !arguments.ignore_stability
+        && !check.is_verified()
+    {
+        output::message("bug: the replay does not confirm the plan; please report the two input files")?;
+        return Ok(Exit::Bug);
+    }
+    Ok(match (&report.outcome, &report.plan) {
+        (_, Some(_)) => Exit::Yes,
+        (Outcome::Impossible(_), None) => Exit::No,
+        (Outcome::Solved | Outcome::OutOfBudget(_), None) => Exit::Undecided,
+    })
+}
+
+fn read(arguments: &PlanningArguments) -> io::Result<Result<Problem, Exit>> {
+    let (start, goal) = match (files::read(&arguments.start), files::read(&arguments.goal)) {
+        (Ok(start), Ok(goal)) => (start, goal),
+        (start, goal) => {
+            for problem in [start.err(), goal.err()].into_iter().flatten() {
+                output::message(&problem)?;
+            }
+            return Ok(Err(Exit::BadInput));
+        }
+    };
+    match read_problem(&start, &goal, &files::resolve) {
+        Ok(problem) => Ok(Ok(problem)),
+        Err(diagnostics) => output::bad_input(&diagnostics, arguments.json).map(Err),
+    }
+}
+
+/// Searches in a pool of the wanted size, until done, out of time, or interrupted.
+fn search(arguments: &PlanningArguments, problem: &Problem) -> Result<Result<Report, Refusal>, String> {
+    let options = Options {
+        objective: match arguments.objective {
+            ObjectiveArgument::Margin => Objective::Margin,
+            ObjectiveArgument::Moves => Objective::Moves,
+        },
+        min_margin: arguments.min_margin,
+        plans: arguments.plans as usize,
+        time_limit: arguments.time_limit,
+        cancel: Some(cancelled_by_interrupt()?),
+        ignore_stability: arguments.ignore_stability,
+        reduction: if arguments.primitive { Reduction::Primitive } else { Reduction::Saturated },
+        ..Options::default()
+    };
+    let threads = arguments.threads.map_or(0, usize::from);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(|error| error.to_string())?;
+    let mut line = ProgressLine::new();
+    let report = pool.install(|| solve(&problem.start, &problem.goal, &options, &mut |event: &Event| line.show(event)));
+    line.clear();
+    Ok(report)
+}
+
+/// A flag that the first Ctrl-C raises; the second one ends the program.
+fn cancelled_by_interrupt() -> Result<Arc<AtomicBool>, String> {
+    let cancel = Arc::new(AtomicBool::new(false));
+    let raised = Arc::clone(&cancel);
+    let on_interrupt = move || {
+        if raised.swap(true, Ordering::SeqCst) {
+            process::exit(INTERRUPTED);
+        }
+    };
+    ctrlc::set_handler(on_interrupt).map_err(|error| error.to_string())?;
+    Ok(cancel)
+}
+
+/// Replays the plan, if there is one, by the code that shares no decision with the search.
+fn check(problem: &Problem, report: &Report) -> Result<Option<Replay>, Refusal> {
+    let required = report.required.unwrap_or(problem.start.require.margin);
+    report.plan.as_ref().map(|plan| replay(&problem.start, &problem.goal, plan, required)).transpose()
+}
+
+/// Writes beside the file and renames, so that no half-written plan is left.
+fn save(path: &Path, text: &str) -> io::Result<()> {
+    let mut beside = path.as_os_str().to_owned();
+    beside.push(".part");
+    std::fs::write(&beside, text)?;
+    std::fs::rename(&beside, path)
+}

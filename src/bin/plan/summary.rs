@@ -1,0 +1,133 @@
+//! A search's report for people.
+
+use std::fmt::Write;
+
+use steadfast::io::Problem;
+use steadfast::reconfigure::replay::Replay;
+use steadfast::reconfigure::{Limit, Objective, Outcome, Plan, Report};
+use steadfast::robot::Configuration;
+use steadfast::statics::Bracket;
+
+use crate::naming;
+
+/// What was found, what it is worth, what limits it, and what was proved.
+pub fn summary(problem: &Problem, report: &Report, replay: Option<&Replay>) -> String {
+    let start = &problem.start;
+    let mut text = headline(report);
+    if let Some(plan) = &report.plan {
+        actions(&mut text, start, plan);
+        bottleneck(&mut text, start, plan);
+    }
+    for (index, plan) in report.alternatives.iter().enumerate() {
+        let _ = writeln!(text, "\nalternative {}: {}", index + 1, worth(plan));
+        actions(&mut text, start, plan);
+    }
+    text.push('\n');
+    proved(&mut text, report);
+    if let Some(replay) = replay {
+        text.push_str(&verified(start, report, replay));
+    }
+    let statistics = &report.statistics;
+    let _ = writeln!(
+        text,
+        "{} states expanded, {} margins asked for, {} oracle solves, {:.2} s",
+        statistics.expanded, statistics.certified, statistics.oracle_solves, statistics.seconds
+    );
+    text
+}
+
+fn headline(report: &Report) -> String {
+    match (&report.outcome, &report.plan) {
+        (Outcome::Impossible(reason), _) => format!("NO PLAN EXISTS: {reason}\n"),
+        (Outcome::OutOfBudget(limit), None) => format!("NO PLAN FOUND: {}\n", stopped(*limit)),
+        (Outcome::OutOfBudget(limit), Some(plan)) => {
+            format!("PLAN: {}, the best so far; {}\n", worth(plan), stopped(*limit))
+        }
+        (Outcome::Solved, Some(plan)) => format!("PLAN: {}\n", worth(plan)),
+        (Outcome::Solved, None) => "NO PLAN FOUND\n".to_string(),
+    }
+}
+
+fn stopped(limit: Limit) -> &'static str {
+    match limit {
+        Limit::Deadline => "stopped at the time limit",
+        Limit::Expansions => "stopped at the limit on expansions",
+        Limit::Memory => "stopped at the memory limit",
+        Limit::Cancelled => "interrupted",
+        Limit::Precision => "some margins are too close to the required one to be decided",
+    }
+}
+
+fn worth(plan: &Plan) -> String {
+    let moves = if plan.moves == 1 { "1 move".to_string() } else { format!("{} moves", plan.moves) };
+    let actions =
+        if plan.actions.len() == 1 { "1 action".to_string() } else { format!("{} actions", plan.actions.len()) };
+    match plan.margin {
+        Some(margin) => format!("{moves} ({actions}), margin {:.4}", margin.lower),
+        None => format!("{moves} ({actions}), made without regard to stability"),
+    }
+}
+
+fn actions(text: &mut String, start: &Configuration, plan: &Plan) {
+    let worst = plan.bottleneck.as_ref().and_then(|bottleneck| bottleneck.action);
+    for (index, planned) in plan.actions.iter().enumerate() {
+        let what = naming::action(start, &planned.action);
+        let margin = planned.margin.map_or_else(String::new, |margin: Bracket| format!("{:.4}", margin.lower));
+        let mark = if worst == Some(index) { "  <- bottleneck" } else { "" };
+        let row = format!("  {:>3}  {what:<42}  {margin:>8}{mark}", index + 1);
+        let _ = writeln!(text, "{}", row.trim_end());
+    }
+}
+
+fn bottleneck(text: &mut String, start: &Configuration, plan: &Plan) {
+    let Some(bottleneck) = &plan.bottleneck else { return };
+    let place = match bottleneck.action {
+        None => "the start itself".to_string(),
+        Some(index) if bottleneck.phase >= 1.0 => format!("after action {}", index + 1),
+        Some(index) => format!("action {} at {:.0} % of the way", index + 1, 100.0 * bottleneck.phase),
+    };
+    let connection = bottleneck.connection.as_ref();
+    let held = connection.map_or_else(String::new, |pair| format!(", connection {}", naming::connection(start, pair)));
+    let _ = writeln!(text, "bottleneck: {place}{held}");
+}
+
+fn proved(text: &mut String, report: &Report) {
+    let proof = &report.proof;
+    if matches!(report.outcome, Outcome::Impossible(_)) {
+        return;
+    }
+    let statement = match (report.objective, proof.optimal, report.required.is_some()) {
+        (Objective::Margin, true, true) => {
+            "proved: no plan has a larger margin, and none with this margin has fewer moves".to_string()
+        }
+        (Objective::Moves, true, true) => "proved: no plan with the required margin has fewer moves".to_string(),
+        (_, true, false) => "proved: no plan has fewer moves".to_string(),
+        (_, false, stability) => {
+            let mut known = Vec::new();
+            if stability && proof.margin_at_most.is_finite() {
+                known.push(format!("no plan has a margin above {:.4}", proof.margin_at_most));
+            }
+            if proof.moves_at_least > 0 && proof.moves_at_least < u32::MAX {
+                known.push(format!("none that is as good has fewer than {} moves", proof.moves_at_least));
+            }
+            if known.is_empty() { "proved: nothing yet".to_string() } else { format!("proved: {}", known.join("; ")) }
+        }
+    };
+    let _ = writeln!(text, "{statement}");
+}
+
+fn verified(start: &Configuration, report: &Report, replay: &Replay) -> String {
+    match replay.failures.first() {
+        None => {
+            let (states, margin) = (replay.oracle_solves, replay.margin.lower);
+            format!(
+                "verified: replayed {} actions over {states} states, smallest margin {margin:.4}\n",
+                replay.actions_replayed
+            )
+        }
+        Some(failure) if report.required.is_none() => {
+            format!("carried out, it would fail: {}\n", crate::verify::sentence(start, report.plan.as_ref(), failure))
+        }
+        Some(failure) => format!("NOT VERIFIED: {}\n", crate::verify::sentence(start, report.plan.as_ref(), failure)),
+    }
+}

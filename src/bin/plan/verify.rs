@@ -1,0 +1,96 @@
+//! `plan verify PLAN`
+
+use std::io;
+
+use steadfast::io::{PlanDocument, read_plan};
+use steadfast::reconfigure::Plan;
+use steadfast::reconfigure::replay::{Failure, Fault, replay};
+use steadfast::robot::Configuration;
+
+use crate::arguments::VerifyArguments;
+use crate::exit::Exit;
+use crate::{files, naming, output};
+
+/// Replays every plan of a file and reports the first thing wrong with each, and all of it.
+///
+/// # Errors
+/// The output cannot be written.
+pub fn run(arguments: &VerifyArguments) -> io::Result<Exit> {
+    let file = match files::read(&arguments.plan) {
+        Ok(file) => file,
+        Err(problem) => {
+            output::message(&problem)?;
+            return Ok(Exit::BadInput);
+        }
+    };
+    let document = match read_plan(&file) {
+        Ok(document) => document,
+        Err(diagnostics) => return output::bad_input(&diagnostics, false),
+    };
+    if document.plans.is_empty() {
+        output::result("NOTHING TO VERIFY: the file holds no plan\n")?;
+        return Ok(Exit::Undecided);
+    }
+    let mut exit = Exit::Yes;
+    let mut text = String::new();
+    for index in 0..document.plans.len() {
+        if index > 0 {
+            text.push_str(&format!("\nalternative {index}: "));
+        }
+        match verify(&document, index) {
+            Ok((verdict, verified)) => {
+                text.push_str(&verdict);
+                if !verified {
+                    exit = Exit::No;
+                }
+            }
+            Err(problem) => {
+                output::message(&format!("error: {}: {problem}", file.name))?;
+                return Ok(Exit::BadInput);
+            }
+        }
+    }
+    output::result(&text)?;
+    Ok(exit)
+}
+
+/// The verdict on one of the file's plans, for people, and whether it verifies.
+fn verify(document: &PlanDocument, index: usize) -> Result<(String, bool), String> {
+    let start = &document.problem.start;
+    let plan = match document.plans[index].to_plan(start) {
+        Ok(plan) => plan,
+        Err(contradiction) => return Ok((format!("NOT VERIFIED: {contradiction}\n"), false)),
+    };
+    let found =
+        replay(start, &document.problem.goal, &plan, start.require.margin).map_err(|refusal| refusal.to_string())?;
+    if found.is_verified() {
+        let (states, margin) = (found.oracle_solves, found.margin.lower);
+        let text = format!(
+            "VERIFIED: {} actions replayed over {states} states, smallest margin {margin:.4}\n",
+            found.actions_replayed
+        );
+        return Ok((text, true));
+    }
+    let mut text = "NOT VERIFIED\n".to_string();
+    for failure in &found.failures {
+        text.push_str(&format!("  {}\n", sentence(start, Some(&plan), failure)));
+    }
+    Ok((text, false))
+}
+
+/// A failure in one sentence: which action, how far, what is wrong, what gives way.
+pub fn sentence(start: &Configuration, plan: Option<&Plan>, failure: &Failure) -> String {
+    let action = failure.action.and_then(|index| Some((index, plan?.actions.get(index)?)));
+    let mut sentence = match action {
+        Some((index, planned)) => format!("action {} ({})", index + 1, naming::action(start, &planned.action)),
+        None => "the plan".to_string(),
+    };
+    if let Some(phase) = failure.phase.filter(|phase| *phase < 1.0) {
+        sentence.push_str(&format!(" at {:.0} % of the way", 100.0 * phase));
+    }
+    sentence.push_str(&format!(": {}", failure.fault));
+    if let (Fault::Unstable { .. }, Some(pair)) = (&failure.fault, &failure.connection) {
+        sentence.push_str(&format!("; connection {} gives way", naming::connection(start, pair)));
+    }
+    sentence
+}
