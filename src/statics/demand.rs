@@ -172,6 +172,16 @@ mod tests {
         }
     }
 
+    #[test]
+    fn hardly_any_friction_is_not_none() {
+        let points = vec![[0.1, 0.1], [-0.1, 0.1], [-0.1, -0.1], [0.1, -0.1]];
+        let connector =
+            Connector { name: String::new(), strength: 1.0, model: Model::Patch { friction: 1e-6, points } };
+        let shear = Wrench::new(Vec3::new(0.0, 2.0, 0.0), Vec3::zeros());
+        let found = demand(&connector, &shear, &NONE).utilisation;
+        assert!((found.lower - 2e6).abs() < 1.0 && (found.upper - 2e6).abs() < 1.0, "{found:?}");
+    }
+
     /// One point carries no moment, two none about their line, and an origin on
     /// the hull's edge none beyond it, whatever the preload.
     #[test]

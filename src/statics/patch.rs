@@ -137,10 +137,17 @@ struct Solved {
 
 impl<'p> Program<'p> {
     fn new(friction: f64, points: &'p [[f64; 2]], wanted: Rows) -> Self {
-        let pressure = central_pressure(points);
-        let mut program = Self { friction, points, wanted, pressure, unheld: SMatrix::zeros(), gram: None };
+        let mut program = Self {
+            friction: 1.0,
+            points,
+            wanted,
+            pressure: central_pressure(points),
+            unheld: SMatrix::zeros(),
+            gram: None,
+        };
         let identity: Vec<Scaling<3>> =
             points.iter().map(|_| Scaling::new(&[1.0, 0.0, 0.0], &[1.0, 0.0, 0.0])).collect();
+        // Little friction holds too: which directions exist depends on the points alone.
         let directions = program.normal_matrix(&identity).symmetric_eigen();
         let smallest = UNHELD * directions.eigenvalues.amax();
         for (value, direction) in directions.eigenvalues.iter().zip(directions.eigenvectors.column_iter()) {
@@ -148,6 +155,7 @@ impl<'p> Program<'p> {
                 program.unheld += direction * direction.transpose();
             }
         }
+        program.friction = friction;
         program.gram = program.normal_matrix(&identity).cholesky();
         program
     }
