@@ -73,7 +73,11 @@ pub(super) fn least_normal_force(wrench: &Wrench, friction: f64, points: &[[f64;
         return NormalForce { total: Bracket::exact(f64::INFINITY), twist: slide };
     }
     let unit: Vec<[f64; 2]> = points.iter().map(|p| [p[0] / lever, p[1] / lever]).collect();
-    let program = Program::new(friction, &unit, wanted / scale);
+    // Shear and torsion count over the friction coefficient: then there is but one cone.
+    let rough = Rows::new(1.0 / friction, 1.0 / friction, 1.0, 1.0, 1.0 / friction);
+    let wanted = wanted.component_mul(&rough);
+    let scale = wanted.amax();
+    let program = Program::new(&unit, wanted / scale);
     let beyond = program.unheld * program.wanted;
     if !(beyond.norm() <= UNHELD) {
         // No force of a single point, or of points in a row, has this direction.
@@ -82,8 +86,12 @@ pub(super) fn least_normal_force(wrench: &Wrench, friction: f64, points: &[[f64;
         return NormalForce { total: Bracket::exact(f64::INFINITY), twist: Twist::new(linear, angular) };
     }
     let solved = program.solve();
-    let y = solved.y;
-    let total = Bracket::new((solved.total.lower * scale).max(bending.total.lower), solved.total.upper * scale);
+    let total = Bracket::new(solved.total.lower * scale, solved.total.upper * scale);
+    if !(total.lower >= bending.total.lower) {
+        let total = Bracket::new(bending.total.lower, total.upper);
+        return NormalForce { total, twist: bending.twist };
+    }
+    let y = solved.y.component_mul(&rough);
     let linear = Vec3::new(-y[0], -y[1], 1.0);
     let angular = Vec3::new(-y[2], -y[3], -y[4]) / lever;
     NormalForce { total, twist: Twist::new(linear, angular) }
@@ -118,7 +126,6 @@ fn centre_of_pressure(wrench: &Wrench, points: &[[f64; 2]]) -> NormalForce {
 }
 
 struct Program<'p> {
-    friction: f64,
     points: &'p [[f64; 2]],
     wanted: Rows,
     /// Positive normal forces whose centre of pressure is the origin.
@@ -136,18 +143,11 @@ struct Solved {
 }
 
 impl<'p> Program<'p> {
-    fn new(friction: f64, points: &'p [[f64; 2]], wanted: Rows) -> Self {
-        let mut program = Self {
-            friction: 1.0,
-            points,
-            wanted,
-            pressure: central_pressure(points),
-            unheld: SMatrix::zeros(),
-            gram: None,
-        };
+    fn new(points: &'p [[f64; 2]], wanted: Rows) -> Self {
+        let mut program =
+            Self { points, wanted, pressure: central_pressure(points), unheld: SMatrix::zeros(), gram: None };
         let identity: Vec<Scaling<3>> =
             points.iter().map(|_| Scaling::new(&[1.0, 0.0, 0.0], &[1.0, 0.0, 0.0])).collect();
-        // Little friction holds too: which directions exist depends on the points alone.
         let directions = program.normal_matrix(&identity).symmetric_eigen();
         let smallest = UNHELD * directions.eigenvalues.amax();
         for (value, direction) in directions.eigenvalues.iter().zip(directions.eigenvectors.column_iter()) {
@@ -155,22 +155,22 @@ impl<'p> Program<'p> {
                 program.unheld += direction * direction.transpose();
             }
         }
-        program.friction = friction;
         program.gram = program.normal_matrix(&identity).cholesky();
         program
     }
 
-    /// `A_j z` for one point: what its force `(g_z, g_x / mu, g_y / mu)` adds to the rows.
+    /// `A_j z` for one point: what its force `(g_z, g_x / mu, g_y / mu)` adds to the rows, those of
+    /// shear and torsion over mu.
     fn rows(&self, point: usize, z: &[f64; 3]) -> Rows {
         let [px, py] = self.points[point];
-        let (gx, gy) = (self.friction * z[1], self.friction * z[2]);
+        let [_, gx, gy] = *z;
         Rows::new(gx, gy, py * z[0], -px * z[0], px * gy - py * gx)
     }
 
     /// `A_j' y`.
     fn columns(&self, point: usize, y: &Rows) -> [f64; 3] {
         let [px, py] = self.points[point];
-        [py * y[2] - px * y[3], self.friction * (y[0] - py * y[4]), self.friction * (y[1] + px * y[4])]
+        [py * y[2] - px * y[3], y[0] - py * y[4], y[1] + px * y[4]]
     }
 
     fn solve(&self) -> Solved {
