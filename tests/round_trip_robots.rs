@@ -160,15 +160,17 @@ struct Sketch {
     drafts: Vec<Draft>,
     margin: Option<Bracket>,
     moves: u32,
-    bottleneck: Option<(Option<usize>, f64, Option<(Index, Face, Face)>)>,
+    /// Action and phase.
+    bottleneck: Option<(Option<usize>, f64)>,
+    held: Option<(Index, Face, Face)>,
 }
 
 prop_compose! {
     fn sketches()(
         drafts in vec(drafts(), 0..6), margin in option::of(bracket()), moves: u32,
-        bottleneck in option::of((option::of(0..9usize), 0.0..=1.0, option::of((any::<Index>(), face(), face())))),
+        bottleneck in option::of((option::of(0..9usize), 0.0..=1.0)), held in option::of((any::<Index>(), face(), face())),
     ) -> Sketch {
-        Sketch { drafts, margin, moves, bottleneck }
+        Sketch { drafts, margin, moves, bottleneck, held }
     }
 }
 
@@ -205,10 +207,8 @@ fn plan(start: &Configuration, sketch: &Sketch, number: usize) -> (Plan, Vec<Con
         }
         actions.push(PlannedAction { action, margin: draft.margin, phase: draft.phase });
     }
-    let bottleneck = sketch.bottleneck.map(|(action, phase, held)| {
-        let held = held.map(|(module, a, b)| connection([module.index(cells.len()); 2], [a, b]));
-        Bottleneck { action, phase, connection: held }
-    });
+    let held = sketch.held.map(|(module, a, b)| connection([module.index(cells.len()); 2], [a, b]));
+    let bottleneck = sketch.bottleneck.map(|(action, phase)| Bottleneck { action, phase, connection: held });
     (Plan { margin: sketch.margin, moves: sketch.moves, bottleneck, actions }, contradictions)
 }
 
