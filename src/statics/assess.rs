@@ -19,7 +19,9 @@ use super::validate::{InvalidStructure, validate};
 /// The utilisation t is the smallest common factor on all rated strengths with
 /// which every free body can be in balance,
 ///
-///     t* = min t  subject to  balance, friction cones, s_l(w_l) <= t S_l,
+/// ```text
+/// t* = min t  subject to  balance, friction cones, s_l(w_l) <= t S_l,
+/// ```
 ///
 /// the internal stability margin is `1 - t*`. Both ends of the bracket are
 /// evaluated from wrench and twist fields on the structure's own data, for loads

@@ -103,7 +103,7 @@ pub fn incline(friction: f64, degrees: f64) -> (Structure, f64) {
     let angle = degrees.to_radians();
     let mut structure = empty();
     structure.gravity = Vec3::new(angle.sin(), 0.0, -angle.cos()) * G;
-    structure.bodies.push(body(2.0, Vec3::z() * 0.02));
+    structure.bodies.push(body(2.0, Vec3::z() * 0.002));
     for [x, y] in [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]] {
         structure.contacts.push(contact(0, Anchor::World, Vec3::new(x, y, 0.0) * 0.1, Vec3::z(), friction));
     }
