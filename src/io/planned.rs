@@ -64,7 +64,8 @@ impl PlanSequence {
         let mut cells = cells(start);
         let step = |planned: &reconfigure::PlannedAction| {
             let action = with_turn(&mut cells, planned.action);
-            PlannedStep { action, margin: planned.margin }
+            let phase = planned.phase.filter(|_| planned.action.is_move());
+            PlannedStep { action, margin: planned.margin, phase }
         };
         let bottleneck = plan.bottleneck.as_ref().map(|bottleneck| PlanBottleneck {
             action: bottleneck.action,
@@ -96,7 +97,7 @@ impl PlanSequence {
                 (given @ PlannedAction::Pivot { .. }, actual) if given != actual => {
                     Err(Contradiction { action: index })
                 }
-                _ => Ok(reconfigure::PlannedAction { action, margin: step.margin, phase: None }),
+                _ => Ok(reconfigure::PlannedAction { action, margin: step.margin, phase: step.phase }),
             }
         };
         let actions = self.actions.iter().enumerate().map(convert).collect::<Result<_, _>>()?;

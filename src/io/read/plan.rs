@@ -104,18 +104,18 @@ fn sequence(
 }
 
 fn step(wire: &wire::Action, modules: &Names<'_>, place: &Place<'_>, findings: &mut Findings) -> Option<PlannedStep> {
-    let (action, margin) = match wire {
+    let (action, margin, phase) = match wire {
         wire::Action::Attach { ports, margin } => {
-            (PlannedAction::Attach(pair(ports, modules, &place.key("ports"), findings)?), margin)
+            (PlannedAction::Attach(pair(ports, modules, &place.key("ports"), findings)?), margin, &None)
         }
         wire::Action::Detach { ports, margin } => {
-            (PlannedAction::Detach(pair(ports, modules, &place.key("ports"), findings)?), margin)
+            (PlannedAction::Detach(pair(ports, modules, &place.key("ports"), findings)?), margin, &None)
         }
-        wire::Action::Slide { module, to, margin } => {
+        wire::Action::Slide { module, to, margin, phase } => {
             let module = modules.find(module, &place.key("module"), findings)?;
-            (PlannedAction::Slide { module, to: to.cell }, margin)
+            (PlannedAction::Slide { module, to: to.cell }, margin, phase)
         }
-        wire::Action::Pivot { module, support, axis, angle_deg, to, margin } => {
+        wire::Action::Pivot { module, support, axis, angle_deg, to, margin, phase } => {
             let module = modules.find(module, &place.key("module"), findings);
             let support = modules.find(support, &place.key("support"), findings);
             if module.is_some() && module == support {
@@ -138,10 +138,11 @@ fn step(wire: &wire::Action, modules: &Names<'_>, place: &Place<'_>, findings: &
             }
             let quarter_turns = if *angle_deg == 90 { 1 } else { 2 };
             let axis = face(*axis);
-            (PlannedAction::Pivot { module: module?, support: support?, axis, quarter_turns, to: to.cell }, margin)
+            let turn = PlannedAction::Pivot { module: module?, support: support?, axis, quarter_turns, to: to.cell };
+            (turn, margin, phase)
         }
     };
-    Some(PlannedStep { action, margin: margin.map(bracket) })
+    Some(PlannedStep { action, margin: margin.map(bracket), phase: phase.map(|phase| phase.0) })
 }
 
 fn pair(ports: &[String; 2], modules: &Names<'_>, place: &Place<'_>, findings: &mut Findings) -> Option<[Port; 2]> {
