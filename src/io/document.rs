@@ -121,9 +121,6 @@ pub struct PlannedStep {
     /// Smallest margin of the action's transient states; `None` when nothing
     /// was proved of it (planned without stability).
     pub margin: Option<Bracket>,
-    /// How far a move is done, 0 to 1, where that margin is attained; `None`
-    /// when the plan does not say, and of actions that move nothing.
-    pub phase: Option<f64>,
 }
 
 /// Where a plan's margin is smallest.

@@ -64,8 +64,7 @@ impl PlanSequence {
         let mut cells = cells(start);
         let step = |planned: &reconfigure::PlannedAction| {
             let action = with_turn(&mut cells, planned.action);
-            let phase = planned.phase.filter(|_| planned.action.is_move());
-            PlannedStep { action, margin: planned.margin, phase }
+            PlannedStep { action, margin: planned.margin }
         };
         let bottleneck = plan.bottleneck.as_ref().map(|bottleneck| PlanBottleneck {
             action: bottleneck.action,
@@ -97,7 +96,7 @@ impl PlanSequence {
                 (given @ PlannedAction::Pivot { .. }, actual) if given != actual => {
                     Err(Contradiction { action: index })
                 }
-                _ => Ok(reconfigure::PlannedAction { action, margin: step.margin, phase: step.phase }),
+                _ => Ok(reconfigure::PlannedAction { action, margin: step.margin, phase: None }),
             }
         };
         let actions = self.actions.iter().enumerate().map(convert).collect::<Result<_, _>>()?;

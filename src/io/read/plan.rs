@@ -104,18 +104,18 @@ fn sequence(
 }
 
 fn step(wire: &wire::Action, modules: &Names<'_>, place: &Place<'_>, findings: &mut Findings) -> Option<PlannedStep> {
-    let (action, margin, phase) = match wire {
+    let (action, margin) = match wire {
         wire::Action::Attach { ports, margin } => {
-            (PlannedAction::Attach(pair(ports, modules, &place.key("ports"), findings)?), margin, &None)
+            (PlannedAction::Attach(pair(ports, modules, &place.key("ports"), findings)?), margin)
         }
         wire::Action::Detach { ports, margin } => {
-            (PlannedAction::Detach(pair(ports, modules, &place.key("ports"), findings)?), margin, &None)
+            (PlannedAction::Detach(pair(ports, modules, &place.key("ports"), findings)?), margin)
         }
-        wire::Action::Slide { module, to, margin, phase } => {
+        wire::Action::Slide { module, to, margin } => {
             let module = modules.find(module, &place.key("module"), findings)?;
-            (PlannedAction::Slide { module, to: to.cell }, margin, phase)
+            (PlannedAction::Slide { module, to: to.cell }, margin)
         }
-        wire::Action::Pivot { module, support, axis, angle_deg, to, margin, phase } => {
+        wire::Action::Pivot { module, support, axis, angle_deg, to, margin } => {
             let module = modules.find(module, &place.key("module"), findings);
             let support = modules.find(support, &place.key("support"), findings);
             if module.is_some() && module == support {
@@ -138,11 +138,10 @@ fn step(wire: &wire::Action, modules: &Names<'_>, place: &Place<'_>, findings: &
             }
             let quarter_turns = if *angle_deg == 90 { 1 } else { 2 };
             let axis = face(*axis);
-            let turn = PlannedAction::Pivot { module: module?, support: support?, axis, quarter_turns, to: to.cell };
-            (turn, margin, phase)
+            (PlannedAction::Pivot { module: module?, support: support?, axis, quarter_turns, to: to.cell }, margin)
         }
     };
-    Some(PlannedStep { action, margin: margin.map(bracket), phase: phase.map(|phase| phase.0) })
+    Some(PlannedStep { action, margin: margin.map(bracket) })
 }
 
 fn pair(ports: &[String; 2], modules: &Names<'_>, place: &Place<'_>, findings: &mut Findings) -> Option<[Port; 2]> {

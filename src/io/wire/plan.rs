@@ -155,10 +155,6 @@ pub(crate) enum Action {
         /// Smallest margin of its transient states; null when unknown.
         #[serde(default)]
         margin: Option<Bracket>,
-        /// How far the move is done, 0 to 1, where that margin is; null when unknown.
-        #[serde(default)]
-        #[schemars(range(min = 0, max = 1))]
-        phase: Option<Real>,
     },
     /// A module turns about an edge that it shares with a neighbour.
     Pivot {
@@ -175,10 +171,6 @@ pub(crate) enum Action {
         /// Smallest margin of its transient states; null when unknown.
         #[serde(default)]
         margin: Option<Bracket>,
-        /// How far the move is done, 0 to 1, where that margin is; null when unknown.
-        #[serde(default)]
-        #[schemars(range(min = 0, max = 1))]
-        phase: Option<Real>,
     },
 }
 

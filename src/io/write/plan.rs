@@ -71,12 +71,11 @@ fn actions(start: &Configuration, sequence: &PlanSequence) -> Vec<wire::Action> 
 fn action(start: &Configuration, step: &PlannedStep) -> wire::Action {
     let id = |module: usize| start.modules[module].id.clone();
     let margin = step.margin.map(bracket);
-    let phase = step.phase.map(Real);
     match step.action {
         PlannedAction::Attach(pair) => wire::Action::Attach { ports: ports(start, pair), margin },
         PlannedAction::Detach(pair) => wire::Action::Detach { ports: ports(start, pair), margin },
         PlannedAction::Slide { module, to } => {
-            wire::Action::Slide { module: id(module), to: wire::CellTarget { cell: to }, margin, phase }
+            wire::Action::Slide { module: id(module), to: wire::CellTarget { cell: to }, margin }
         }
         PlannedAction::Pivot { module, support, axis, quarter_turns, to } => wire::Action::Pivot {
             module: id(module),
@@ -85,7 +84,6 @@ fn action(start: &Configuration, step: &PlannedStep) -> wire::Action {
             angle_deg: 90 * u32::from(quarter_turns),
             to: wire::CellTarget { cell: to },
             margin,
-            phase,
         },
     }
 }
