@@ -39,12 +39,9 @@ pub(super) struct Iterate {
 /// Iterations after which the solver gives up; it needs 8 to 25.
 const ITERATIONS: u32 = 60;
 
-/// Size of a scaled variable from which the iterate is a ray, not a point: where a
-/// structure can clamp itself, rewarding forces lets them grow without end.
-const RAY: f64 = 1e9;
-
 /// Solves `program`. `None` when the solver could not even start or returned
-/// no point.
+/// something that is not finite. Where a structure can clamp itself, rewarding
+/// forces lets them grow without end: such a field still proves a bound.
 pub(super) fn solve(program: &Program, attempt: &Attempt) -> Option<Iterate> {
     let layout = Layout::new(program);
     let heads = program.groups.iter().filter(|group| group.cone != Cone::Free).count() as f64;
@@ -63,7 +60,7 @@ pub(super) fn solve(program: &Program, attempt: &Attempt) -> Option<Iterate> {
     let mut solver = DefaultSolver::new(&nothing, &objective, &matrix, &limits, &layout.cones, settings).ok()?;
     solver.solve();
     let (x, z) = (&solver.solution.x, &solver.solution.z);
-    if !(x.iter().all(|v| v.is_finite()) && z.iter().all(|z| z.abs() <= RAY)) {
+    if !x.iter().chain(z).all(|value| value.is_finite()) {
         return None;
     }
     let mut variables = vec![0.0; program.columns.len()];
