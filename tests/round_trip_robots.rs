@@ -250,8 +250,7 @@ fn outcomes() -> impl Strategy<Value = Outcome> {
 prop_compose! {
     fn statistics()(counts: [u64; 6], seconds in number()) -> Statistics {
         let [expanded, states, generated, certified, oracle_solves, bytes] = counts;
-        let ruled_out = certified / 3;
-        Statistics { expanded, states, generated, certified, ruled_out, oracle_solves, bytes, seconds: seconds.abs() }
+        Statistics { expanded, states, generated, certified, oracle_solves, bytes, seconds: seconds.abs() }
     }
 }
 
@@ -271,7 +270,7 @@ fn goal(start: &Configuration, labelled: bool, free_frame: bool, turns: &[Orient
 prop_compose! {
     fn documents()(
         start in configurations(), labelled: bool, free_frame: bool, turns in vec(orientation(), 8),
-        outcome in outcomes(), by_moves: bool, required in option::of(number()), found: bool,
+        outcome in outcomes(), cut_by in option::of(limit()), by_moves: bool, required in option::of(number()), found: bool,
         sketches in vec(sketches(), 1..4), statistics in statistics(), optimal: bool,
         bounds in (option::of(number()), option::of(0..u32::MAX)),
     ) -> PlanDocument {
@@ -299,6 +298,7 @@ prop_compose! {
                 required,
                 plan: plans.next(),
                 alternatives: plans.collect(),
+                alternatives_cut_by: cut_by,
                 proof: Proof {
                     optimal,
                     margin_at_most: bounds.0.unwrap_or(unproved.0),
