@@ -11,7 +11,7 @@ use super::conic::Iterate;
 use super::normal::{Metric, Normal, Operator, array};
 use super::program::{Cone, Group, Program};
 use super::respect::respect_unlimited;
-use super::second_order::{allows, divide, dot, product, step_length};
+use super::second_order::{aim, dot, shortened_step};
 
 /// Iterations after which the method gives up; it needs 10 to 25, more where
 /// parts clamp themselves.
@@ -243,9 +243,9 @@ impl State {
                 let (p, d) = (&point[range.clone()], &direction[range]);
                 match (group.cone, group.len) {
                     (Cone::Free, _) => step,
-                    (Cone::NonNegative, _) => shortened::<1>(p, d, shorten, step),
-                    (Cone::Lorentz, 3) => shortened::<3>(p, d, shorten, step),
-                    (Cone::Lorentz, _) => shortened::<6>(p, d, shorten, step),
+                    (Cone::NonNegative, _) => shortened_step::<1>(&array(p), &array(d), shorten, step),
+                    (Cone::Lorentz, 3) => shortened_step::<3>(&array(p), &array(d), shorten, step),
+                    (Cone::Lorentz, _) => shortened_step::<6>(&array(p), &array(d), shorten, step),
                 }
             })
         };
@@ -259,19 +259,6 @@ impl State {
         respect_unlimited(program, &mut v);
         Iterate { v, z, t }
     }
-}
-
-/// The smaller of `step` and the step that one cone allows.
-fn shortened<const N: usize>(point: &[f64], direction: &[f64], shorten: f64, step: f64) -> f64 {
-    let (point, direction) = (array::<N>(point), array::<N>(direction));
-    if allows(&point, &direction, step / shorten) { step } else { step.min(step_length(&point, &direction, shorten)) }
-}
-
-/// The corrector's target in one Lorentz cone.
-fn aim<const N: usize>(point: &[f64; N], dx: &[f64; N], ds: &[f64; N], mu: f64) -> [f64; N] {
-    let (square, second) = (product(point, point), product(dx, ds));
-    let wanted = std::array::from_fn(|k| if k == 0 { mu } else { 0.0 } - square[k] - second[k]);
-    divide(point, &wanted)
 }
 
 #[cfg(test)]
@@ -313,13 +300,8 @@ mod tests {
             for (index, x) in [0.0, 0.1].into_iter().enumerate() {
                 for corner in [[0.04, 0.04], [-0.04, 0.04], [0.0, -0.04]] {
                     let position = Vec3::new(x + corner[0], corner[1], -0.05);
-                    ring.contacts.push(Contact {
-                        body: index,
-                        against: Anchor::World,
-                        position,
-                        normal: Vec3::z(),
-                        friction,
-                    });
+                    let (against, normal) = (Anchor::World, Vec3::z());
+                    ring.contacts.push(Contact { body: index, against, position, normal, friction });
                 }
             }
         }
@@ -328,7 +310,6 @@ mod tests {
 
     fn models() -> Vec<Model> {
         let points = vec![[0.05, 0.05], [-0.05, 0.05], [-0.05, -0.05], [0.05, -0.05]];
-        let none = f64::INFINITY;
         let latch = |compression, torsion| Model::Box {
             shear: [20.0, 10.0],
             tension: 20.0,
@@ -339,8 +320,8 @@ mod tests {
         vec![
             Model::Cone { friction: [0.5, 0.4], radius: [0.03, 0.03, 0.04] },
             Model::Patch { friction: 0.4, points },
-            latch(none, 1.0),
-            latch(30.0, none),
+            latch(f64::INFINITY, 1.0),
+            latch(30.0, f64::INFINITY),
             latch(30.0, 1.0),
         ]
     }

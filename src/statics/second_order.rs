@@ -34,9 +34,15 @@ pub(super) fn step_length<const N: usize>(z: &[f64; N], d: &[f64; N], shorten: f
 }
 
 /// Whether `z + a d` is in the cone's interior, up to rounding.
-pub(super) fn allows<const N: usize>(z: &[f64; N], d: &[f64; N], a: f64) -> bool {
+fn allows<const N: usize>(z: &[f64; N], d: &[f64; N], a: f64) -> bool {
     let there: [f64; N] = std::array::from_fn(|k| z[k] + a * d[k]);
     there[0] > 0.0 && there[0] * there[0] > dot(&there[1..], &there[1..])
+}
+
+/// The smaller of `step` and the step that one cone allows, times `shorten`.
+pub(super) fn shortened_step<const N: usize>(z: &[f64; N], d: &[f64; N], shorten: f64, step: f64) -> f64 {
+    // Most cones are not in the way, which is cheaper to see than where they are left.
+    if allows(z, d, step / shorten) { step } else { step.min(step_length(z, d, shorten)) }
 }
 
 /// The Nesterov-Todd scaling `W` of a pair in the cone's interior: the symmetric
@@ -86,6 +92,14 @@ pub(super) fn divide<const N: usize>(u: &[f64; N], v: &[f64; N]) -> [f64; N] {
     let along = dot(&u[1..], &v[1..]);
     let head = (u[0] * v[0] - along) / determinant(u);
     std::array::from_fn(|i| if i == 0 { head } else { (v[i] - head * u[i]) / u[0] })
+}
+
+/// Mehrotra's target `l \ (mu e - l o l - dx o ds)` at the scaled point `l` and
+/// the scaled predictor steps.
+pub(super) fn aim<const N: usize>(point: &[f64; N], dx: &[f64; N], ds: &[f64; N], mu: f64) -> [f64; N] {
+    let (square, second) = (product(point, point), product(dx, ds));
+    let wanted = std::array::from_fn(|k| if k == 0 { mu } else { 0.0 } - square[k] - second[k]);
+    divide(point, &wanted)
 }
 
 pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {

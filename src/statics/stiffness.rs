@@ -86,11 +86,11 @@ impl Stiffness {
         let diagonal = |&first: &usize| -> [f64; 6] { std::array::from_fn(|k| self.blocks[first][k][k]) };
         let least: Vec<[f64; 6]> =
             self.first.iter().map(diagonal).map(|d| d.map(|d| (d * LEAST_PIVOT).max(f64::MIN_POSITIVE))).collect();
-        for k in 0..self.first.len() {
+        for (k, least) in least.iter().enumerate() {
             let first = self.first[k];
             let count = self.below[k].len();
             let pivot = &mut self.blocks[first];
-            cholesky(pivot, &least[k]);
+            cholesky(pivot, least);
             let pivot = *pivot;
             let column = &mut self.blocks[first + 1..=first + count];
             for block in column.iter_mut() {
@@ -202,8 +202,8 @@ fn cholesky(matrix: &mut Matrix, least: &[f64; 6]) {
     for c in 0..6 {
         let root = matrix[c][c].max(least[c]).sqrt();
         matrix[c][c] = root;
-        for r in c + 1..6 {
-            matrix[c][r] /= root;
+        for entry in &mut matrix[c][c + 1..] {
+            *entry /= root;
         }
         let column = matrix[c];
         for d in c + 1..6 {
@@ -254,7 +254,7 @@ mod tests {
         for (n, &(i, j)) in pairs.iter().enumerate() {
             for k in 0..8 {
                 let entry = |seed: usize| ((seed * 7 + k * 13 + n * 5) % 11) as f64 - 5.0;
-                columns.push([(i, std::array::from_fn(|r| entry(r))), (j, std::array::from_fn(|r| entry(r * r + 3)))]);
+                columns.push([(i, std::array::from_fn(entry)), (j, std::array::from_fn(|r| entry(r * r + 3)))]);
             }
         }
         for column in &columns {
