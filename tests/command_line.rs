@@ -70,18 +70,85 @@ fn bad_input_is_json_when_asked() {
     assert_eq!(output.status.code(), Some(30));
 }
 
+/// The program with a standard output of our own.
+fn plan_into(arguments: &[&str], stdout: impl Into<Stdio>) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_plan"));
+    command.args(arguments).current_dir(problems::root()).stdout(stdout).stderr(Stdio::piped());
+    command.spawn().unwrap().wait_with_output().unwrap()
+}
+
 #[test]
-fn a_closed_pipe_is_no_failure() {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_plan"))
-        .args(["schema", "plan"])
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    drop(child.stdout.take());
-    let output = child.wait_with_output().unwrap();
-    assert_eq!(output.status.code(), Some(0));
-    assert!(output.stderr.is_empty(), "{}", String::from_utf8_lossy(&output.stderr));
+fn a_closed_pipe_leaves_the_exit_code_alone() {
+    let cases: [(&[&str], i32); 4] = [
+        (&["schema", "plan"], 0),
+        (&["check", "structures/hang_one.json"], 0),
+        (&["check", "structures/cantilever_box_3.json"], 10),
+        (&["check", "--json", "malformed/structure/unknown_key.json"], 30),
+    ];
+    for (arguments, code) in cases {
+        let (reader, writer) = std::io::pipe().unwrap();
+        drop(reader);
+        let output = plan_into(arguments, writer);
+        assert_eq!(output.status.code(), Some(code), "{arguments:?}");
+        assert!(output.stderr.is_empty(), "{}", String::from_utf8_lossy(&output.stderr));
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_is_told() {
+    let full = std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+    let output = plan_into(&["check", "structures/hang_one.json"], full);
+    assert_eq!(output.status.code(), Some(30));
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert!(told.starts_with("error: the output cannot be written: "), "{told}");
+}
+
+#[test]
+fn unreadable_files_are_reported_like_all_others() {
+    for arguments in [&["check", "no/such.json", "--json"][..], &["no/such.json", "no/such.json", "--json"]] {
+        let output = plan(arguments);
+        assert_eq!(output.status.code(), Some(30));
+        let value: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!(value["format"], "errors/1");
+        assert_eq!(value["errors"][0]["code"], "E001");
+        assert_eq!(value["errors"][0]["file"], "no/such.json");
+        assert_eq!(
+            value["errors"].as_array().unwrap().len(),
+            arguments.len() - 1 - usize::from(arguments[0] == "check")
+        );
+    }
+    let output = plan(&["verify", "structures"]);
+    assert_eq!(output.status.code(), Some(30));
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert!(told.starts_with("structures:1:1: error[E001]: cannot be read: "), "{told}");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn endless_files_end() {
+    let output = plan(&["check", "/dev/zero"]);
+    assert_eq!(output.status.code(), Some(30));
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert!(told.contains("error[E006]: the file is larger than the 64 MB that are read"), "{told}");
+}
+
+#[test]
+fn a_plan_against_itself_does_not_verify() {
+    let text = std::fs::read_to_string(problems::root().join("valid/plan.json")).unwrap();
+    let altered = text.replace("\"axis\": \"-y\"", "\"axis\": \"+x\"");
+    assert_ne!(altered, text);
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("plan.json");
+    std::fs::write(&path, altered).unwrap();
+    let output = plan(&["verify", path.to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(10));
+    let shown = stdout(&output);
+    assert!(
+        shown.contains("action 1 (pivot  c about b to [0, 0, 2]): a turn by 180 degrees about +x does not lead"),
+        "{shown}"
+    );
+    assert!(shown.contains("a turn by 180 degrees about -y does"), "{shown}");
 }
 
 #[test]

@@ -19,14 +19,27 @@ fn main() {
             trials.push(Trial::test(format!("{kind}/{name}"), move || check(kind, &path)));
         }
     }
-    trials.push(Trial::test("ten megabytes of brackets", || bounded("[".repeat(10_000_000))));
-    trials.push(Trial::test("ten megabytes of nested objects", || bounded("{\"a\":".repeat(2_000_000))));
+    trials.push(Trial::test("ten megabytes of brackets", || bounded("structure", "[".repeat(10_000_000))));
+    trials.push(Trial::test("ten megabytes of nested objects", || bounded("structure", "{\"a\":".repeat(2_000_000))));
     trials.push(Trial::test("ten megabytes of unknown keys", || {
         let keys: Vec<_> = (0..700_000).map(|i| format!("\"k{i:07}\":1")).collect();
-        bounded(format!("{{\"format\":\"structure/1\",{}}}", keys.join(",")))
+        bounded("structure", format!("{{\"format\":\"structure/1\",{}}}", keys.join(",")))
     }));
     trials.push(Trial::test("ten megabytes in one line", || {
-        bounded(format!("{{\"format\":\"structure/1\",\"bodies\":[{}1]}}", "1,".repeat(5_000_000)))
+        bounded("structure", format!("{{\"format\":\"structure/1\",\"bodies\":[{}1]}}", "1,".repeat(5_000_000)))
+    }));
+    trials.push(Trial::test("all modules in all obstacles", || {
+        let list = |item: &dyn Fn(usize) -> String| (0..20_000).map(item).collect::<Vec<_>>().join(",");
+        let modules = list(&|i| format!(r#"{{"id":"{i}","type":"cube","cell":[{i},0,0]}}"#));
+        let cuboid = r#""shape":{"cuboid":{"half_extents_m":[2000,1,1]}},"position_m":[0,0,0],"friction":0"#;
+        let obstacles = list(&|_| format!("{{{cuboid}}}"));
+        bounded(
+            "configuration",
+            format!(
+                r#"{{"format":"configuration/1","catalogue":"cube","gravity_m_s2":[0,0,0],"connections":"touching",
+                "environment":{{"obstacles":[{obstacles}]}},"modules":[{modules}]}}"#
+            ),
+        )
     }));
     libtest_mimic::run(&Arguments::from_args(), trials).exit();
 }
@@ -72,8 +85,8 @@ fn check(kind: &str, path: &PathBuf) -> Result<(), Failed> {
 }
 
 /// A hostile file must be refused in few words.
-fn bounded(text: String) -> Result<(), Failed> {
-    let Err(diagnostics) = read("structure", &SourceFile::new("hostile.json", text)) else {
+fn bounded(kind: &str, text: String) -> Result<(), Failed> {
+    let Err(diagnostics) = read(kind, &SourceFile::new("hostile.json", text)) else {
         return Err("the file is accepted".into());
     };
     let shown = diagnostics.to_string();

@@ -116,16 +116,22 @@ proptest! {
 }
 
 #[test]
-fn plans_keep_their_turns_and_a_false_turn_is_found() {
-    use steadfast::io::{PlanSequence, PlannedAction, read_plan};
-    let text = std::fs::read(problems::root().join("valid/plan.json")).unwrap();
-    let document = read_plan(&SourceFile::new("plan.json", text)).unwrap();
-    let (start, sequence) = (&document.problem.start, &document.plans[0]);
-    let plan = sequence.to_plan(start).unwrap();
-    assert_eq!(&PlanSequence::new(start, &plan), sequence);
+fn a_false_turn_is_kept_and_found() {
+    use steadfast::io::{AxisAngle, PlanDocument, read_plan, write_plan};
+    use steadfast::reconfigure::Turn;
+    use steadfast::robot::Face;
+    let read = |text: String| read_plan(&SourceFile::new("plan.json", text)).unwrap();
+    let text = std::fs::read_to_string(problems::root().join("valid/plan.json")).unwrap();
+    let sound = read(text.clone());
+    assert!(sound.contradictions.is_empty());
+    assert_eq!(sound, PlanDocument::new(sound.problem.clone(), &sound.report));
 
-    let mut altered = sequence.clone();
-    let PlannedAction::Pivot { quarter_turns, .. } = &mut altered.actions[0].action else { panic!("a pivot") };
-    *quarter_turns = 1;
-    assert_eq!(altered.to_plan(start).unwrap_err().action, 0);
+    let given = AxisAngle { axis: Face::PosY, turn: Turn::Half };
+    let actual = Some(AxisAngle { axis: Face::NegY, turn: Turn::Half });
+    let altered = read(text.replace("\"axis\": \"-y\"", "\"axis\": \"+y\""));
+    let [contradiction] = altered.contradictions[..] else { panic!("one contradiction") };
+    assert_eq!((contradiction.plan, contradiction.action), (0, 0));
+    assert_eq!((contradiction.given, contradiction.actual), (given, actual));
+    assert_eq!(altered.report, sound.report);
+    assert_eq!(read(write_plan(&altered).unwrap()), altered);
 }

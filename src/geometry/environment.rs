@@ -7,13 +7,21 @@ use super::separation::overlap;
 use super::solid::Solid;
 use super::tolerances::SKIN;
 
-/// Modules below the ground or inside obstacles, by module. Completes
-/// [`Configuration::problems`], of which there must be none.
+/// Most problems that are looked for: modules and obstacles that all overlap each
+/// other must not take a time that grows with the number of their pairs.
+const MOST: usize = 100;
+
+/// Modules below the ground or inside obstacles, by module: of each module the first obstacle,
+/// and not many more than a hundred problems in all. Completes [`Configuration::problems`],
+/// of which there must be none.
 pub fn environment_problems(configuration: &Configuration) -> Vec<Problem> {
     let environment = &configuration.environment;
     let obstacles = BroadPhase::new(environment.obstacles.iter().map(Solid::from).collect());
     let mut problems = Vec::new();
     for module in 0..configuration.modules.len() {
+        if problems.len() >= MOST {
+            break;
+        }
         let shape = configuration.module_type(module).body.shape.clone();
         let solid = Solid::new(shape, configuration.pose(module));
         let skin = SKIN * solid.size();
@@ -23,10 +31,9 @@ pub fn environment_problems(configuration: &Configuration) -> Vec<Problem> {
         {
             add(Fault::BelowGround);
         }
-        for (obstacle, other) in obstacles.near(&solid, 0.0) {
-            if overlap(&solid, other, skin) {
-                add(Fault::InsideObstacle { obstacle });
-            }
+        let mut near = obstacles.near(&solid, 0.0).into_iter();
+        if let Some((obstacle, _)) = near.find(|(_, other)| overlap(&solid, other, skin)) {
+            add(Fault::InsideObstacle { obstacle });
         }
     }
     problems

@@ -61,6 +61,9 @@ codes! {
     FIXED_MODULES = "E042" "fixed-modules";
     START_AND_GOAL = "E043" "start-and-goal";
     PLAN = "E044" "plan";
+
+    // What is well said, but not what the planner or the oracle takes.
+    REFUSED = "E050" "refused";
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::codes::Code;
+use super::codes::{self, Code};
 
 /// One problem of a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -36,6 +36,23 @@ pub struct Diagnostics {
 impl Diagnostics {
     pub(super) fn new(items: Vec<Diagnostic>, truncated: bool) -> Self {
         Self { items, truncated }
+    }
+
+    /// Why the planner or the oracle refuses what files of good form say, one
+    /// problem for each reason; `file` is what messages blame. `None` without reasons.
+    pub fn refused(file: &str, reasons: impl IntoIterator<Item = String>) -> Option<Self> {
+        let refused = |message| Diagnostic {
+            code: codes::REFUSED,
+            file: file.to_string(),
+            path: String::new(),
+            line: 1,
+            column: 1,
+            message,
+            hint: None,
+            excerpt: String::new(),
+        };
+        let items: Vec<_> = reasons.into_iter().map(refused).collect();
+        (!items.is_empty()).then_some(Self { items, truncated: false })
     }
 
     /// The problems, file by file, each file's in the order of its text.

@@ -1,21 +1,30 @@
 //! What files mean, once read: core types with the names that the file gave.
 
-use crate::robot::{Cell, Configuration, Face, Goal, Port};
-use crate::statics::{Bracket, Structure};
+use crate::robot::{Configuration, Goal};
+use crate::statics::Structure;
+
+/// Largest file that is read, in bytes. A million modules fit.
+pub const LARGEST_FILE: usize = 64 << 20;
 
 /// A text and what to call it in messages.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SourceFile {
     /// Name as messages show it, usually the path as the user gave it.
     pub name: String,
-    /// The bytes, which need not be valid UTF-8 nor valid JSON.
-    pub bytes: Vec<u8>,
+    /// The bytes, which need not be valid UTF-8 nor valid JSON; or why the file
+    /// cannot be read, which every reader reports as a problem of the file.
+    pub bytes: Result<Vec<u8>, String>,
 }
 
 impl SourceFile {
     /// A text under a name.
     pub fn new(name: impl Into<String>, bytes: impl Into<Vec<u8>>) -> Self {
-        Self { name: name.into(), bytes: bytes.into() }
+        Self { name: name.into(), bytes: Ok(bytes.into()) }
+    }
+
+    /// A file that cannot be read, and why.
+    pub fn unreadable(name: impl Into<String>, why: impl Into<String>) -> Self {
+        Self { name: name.into(), bytes: Err(why.into()) }
     }
 }
 
@@ -62,128 +71,4 @@ pub enum Checkable {
     Structure(NamedStructure),
     /// A robot in its environment.
     Configuration(Configuration),
-}
-
-/// How a search ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum PlanOutcome {
-    /// A plan was found.
-    Solved,
-    /// It is proved that there is none.
-    Impossible,
-    /// Nothing was found within the limits.
-    OutOfBudget,
-}
-
-/// What a search was asked to optimise.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum PlanObjective {
-    /// The best worst-case margin, then the fewest moves.
-    Margin,
-    /// The fewest moves with at least the required margin.
-    Moves,
-}
-
-/// What a plan's action does, by indices into the start's modules.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum PlannedAction {
-    /// Two coinciding faces engage. Ports are each module's own faces at that moment.
-    Attach([Port; 2]),
-    /// An engaged connection opens.
-    Detach([Port; 2]),
-    /// A module slides into the neighbouring cell `to`.
-    Slide {
-        /// Which module.
-        module: usize,
-        /// Where it ends.
-        to: Cell,
-    },
-    /// A module turns about an edge that it shares with a neighbour.
-    Pivot {
-        /// Which module.
-        module: usize,
-        /// The neighbour that carries the hinge.
-        support: usize,
-        /// World direction that the turn is right-handed about.
-        axis: Face,
-        /// 1 for a turn of 90 degrees, 2 for 180.
-        quarter_turns: u8,
-        /// Where it ends.
-        to: Cell,
-    },
-}
-
-/// An action of a plan with what is known of its transient states.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PlannedStep {
-    /// What is done.
-    pub action: PlannedAction,
-    /// Smallest margin of the action's transient states; `None` when nothing
-    /// was proved of it (planned without stability).
-    pub margin: Option<Bracket>,
-}
-
-/// Where a plan's margin is smallest.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PlanBottleneck {
-    /// Index of the action; `None` when it is the start itself.
-    pub action: Option<usize>,
-    /// How far the action is done, 0 to 1.
-    pub phase: f64,
-    /// The connection that the margin hangs on, if any does.
-    pub connection: Option<[Port; 2]>,
-}
-
-/// A sequence of actions and its worth.
-#[derive(Clone, Debug, PartialEq)]
-pub struct PlanSequence {
-    /// Smallest margin of all transient states, the start's included; `None` when unknown.
-    pub margin: Option<Bracket>,
-    /// Number of moves (slides and pivots).
-    pub moves: usize,
-    /// Where the margin is smallest; `None` when unknown.
-    pub bottleneck: Option<PlanBottleneck>,
-    /// The actions, in order.
-    pub actions: Vec<PlannedStep>,
-}
-
-/// What a search proved.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct PlanProof {
-    /// Whether the first plan is proved best.
-    pub optimal: bool,
-    /// No plan has a larger margin than this; `None` when nothing was proved.
-    pub margin_at_most: Option<f64>,
-    /// No plan has fewer moves than this; `None` when nothing was proved.
-    pub moves_at_least: Option<usize>,
-}
-
-/// What a search did.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct PlanStatistics {
-    /// States expanded.
-    pub expanded: u64,
-    /// Exact oracle calls.
-    pub oracle_solves: u64,
-    /// States that bounds decided without a solve.
-    pub decided_by_bounds: u64,
-    /// Wall-clock time in s.
-    pub seconds: f64,
-}
-
-/// All that a plan file says.
-#[derive(Clone, Debug, PartialEq)]
-pub struct PlanDocument {
-    /// How the search ended.
-    pub outcome: PlanOutcome,
-    /// What it optimised.
-    pub objective: PlanObjective,
-    /// What it proved.
-    pub proof: PlanProof,
-    /// The plans, best first; empty unless solved.
-    pub plans: Vec<PlanSequence>,
-    /// The problem, so that the file stands on its own.
-    pub problem: Problem,
-    /// What the search did.
-    pub statistics: PlanStatistics,
 }

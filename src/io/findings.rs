@@ -2,15 +2,12 @@
 
 use super::codes::{self, Code};
 use super::diagnostics::{Diagnostic, Diagnostics};
-use super::document::SourceFile;
+use super::document::{LARGEST_FILE, SourceFile};
 use super::excerpt::excerpt;
 use super::json::{self, Member, Node, Span};
 
 /// Most problems that are kept; what is found beyond them is not shown.
 const MOST: usize = 50;
-
-/// Largest file that is read, in bytes. A million modules fit.
-const LARGEST: usize = 64 << 20;
 
 /// The problems found so far.
 #[derive(Debug, Default)]
@@ -44,24 +41,22 @@ impl Findings {
     pub(super) fn open<'a>(&mut self, file: &'a SourceFile) -> Option<Document<'a>> {
         let name = file.name.as_str();
         self.files.push(name.to_string());
-        if file.bytes.len() > LARGEST {
-            let message =
-                format!("the file has {} MB, more than the {} MB that are read", file.bytes.len() >> 20, LARGEST >> 20);
-            self.push(
-                name,
-                "",
-                Span::new(0, 0),
-                codes::TOO_LARGE,
-                String::new(),
-                message,
-                Some("is it the right file?".to_string()),
-            );
-            return None;
-        }
-        let text = match std::str::from_utf8(&file.bytes) {
+        let bytes = match &file.bytes {
+            Ok(bytes) if bytes.len() <= LARGEST_FILE => bytes,
+            Ok(_) => {
+                let message = format!("the file is larger than the {} MB that are read", LARGEST_FILE >> 20);
+                self.whole(name, codes::TOO_LARGE, message, "is it the right file?");
+                return None;
+            }
+            Err(why) => {
+                self.whole(name, codes::UNREADABLE, format!("cannot be read: {why}"), "check the path");
+                return None;
+            }
+        };
+        let text = match std::str::from_utf8(bytes) {
             Ok(text) => text,
             Err(error) => {
-                self.not_utf8(file, error.valid_up_to());
+                self.not_utf8(name, bytes, error.valid_up_to());
                 return None;
             }
         };
@@ -72,13 +67,18 @@ impl Findings {
         Some(Document { name, text, root: root? })
     }
 
-    fn not_utf8(&mut self, file: &SourceFile, valid: usize) {
-        let text = std::str::from_utf8(&file.bytes[..valid]).unwrap_or_default();
-        let utf16 = file.bytes.starts_with(&[0xff, 0xfe]) || file.bytes.starts_with(&[0xfe, 0xff]);
+    /// Adds a problem of a file as a whole.
+    fn whole(&mut self, name: &str, code: Code, message: String, hint: &str) {
+        self.push(name, "", Span::new(0, 0), code, String::new(), message, Some(hint.to_string()));
+    }
+
+    fn not_utf8(&mut self, name: &str, bytes: &[u8], valid: usize) {
+        let text = std::str::from_utf8(&bytes[..valid]).unwrap_or_default();
+        let utf16 = bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]);
         let hint = if utf16 { "the file looks like UTF-16: save it as UTF-8" } else { "save the file as UTF-8" };
-        let message = format!("the byte 0x{:02x} is not UTF-8 here", file.bytes[valid]);
+        let message = format!("the byte 0x{:02x} is not UTF-8 here", bytes[valid]);
         let span = Span::new(valid, valid + 1);
-        self.push(&file.name, text, span, codes::NOT_UTF8, String::new(), message, Some(hint.to_string()));
+        self.push(name, text, span, codes::NOT_UTF8, String::new(), message, Some(hint.to_string()));
     }
 
     /// Adds a problem of a value.

@@ -18,20 +18,19 @@ mod excerpt;
 mod findings;
 mod json;
 mod layout;
-mod planned;
+mod plan_document;
 mod read;
 mod schema;
 mod suggest;
+mod turn;
 mod wire;
 mod write;
 
 pub use codes::{CODES, Code};
 pub use diagnostics::{Diagnostic, Diagnostics};
-pub use document::{
-    Checkable, NamedStructure, PlanBottleneck, PlanDocument, PlanObjective, PlanOutcome, PlanProof, PlanSequence,
-    PlanStatistics, PlannedAction, PlannedStep, Problem, Resolve, SourceFile, no_references,
-};
-pub use planned::Contradiction;
+pub use document::{Checkable, LARGEST_FILE, NamedStructure, Problem, Resolve, SourceFile, no_references};
+pub use plan_document::{Contradiction, PlanDocument};
 pub use read::{read_catalogue, read_checkable, read_configuration, read_plan, read_problem, read_structure};
 pub use schema::{schema, schema_names};
-pub use write::{NotFinite, write_check, write_configuration, write_plan, write_structure};
+pub use turn::AxisAngle;
+pub use write::{Unwritable, write_check, write_configuration, write_plan, write_structure};

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::geometry::{SKIN, Solid, overlap};
+use crate::geometry::environment_problems;
 use crate::robot::{Configuration, FaceConnection, Goal, Problem as Unsound};
 use crate::statics::{Bracket, InvalidStructure};
 
@@ -24,13 +24,6 @@ pub enum Refusal {
     Structure(Vec<InvalidStructure>),
     /// A cell is too far from the origin for plans to be counted in cells.
     TooFar {
-        /// Which of the two.
-        which: Which,
-        /// The module.
-        module: String,
-    },
-    /// A module is in the ground or an obstacle.
-    Overlap {
         /// Which of the two.
         which: Which,
         /// The module.
@@ -147,9 +140,6 @@ impl fmt::Display for Refusal {
             Self::TooFar { which, module } => {
                 write!(f, "module `{module}` of the {which} is more than {LARGEST_COORDINATE} cells from the origin")
             }
-            Self::Overlap { which, module } => {
-                write!(f, "module `{module}` of the {which} overlaps the ground or an obstacle")
-            }
             Self::CataloguesDiffer => f.write_str("start and goal are made of different catalogues"),
             Self::ConnectorsDoNotMate { types: [a, b] } => {
                 write!(f, "the face connectors of `{a}` and `{b}` are of different models and do not mate")
@@ -172,11 +162,17 @@ impl fmt::Display for Impossible {
             }
             Self::FixedModule { module } => write!(f, "module `{module}` is fixed and cannot be as the goal wants it"),
             Self::Disconnected(which) => write!(f, "the {which} is not connected"),
+            Self::Unstable { which, margin, .. } if margin.upper == f64::NEG_INFINITY => {
+                write!(f, "the {which} tips, slides or falls as a whole")
+            }
             Self::Unstable { which, margin, required, .. } => write!(
                 f,
                 "the {which} is not stable enough: its margin is at most {:.4}, {required:.4} is required",
                 margin.upper
             ),
+            Self::Exhausted { required } if *required == f64::NEG_INFINITY => {
+                f.write_str("no sequence of actions leads from the start to the goal")
+            }
             Self::Exhausted { required } => {
                 write!(f, "no sequence of actions keeps the margin at {required:.4} or above")
             }
@@ -193,10 +189,13 @@ pub(super) fn check(start: &Configuration, goal: &Goal) -> Result<(), Refusal> {
             problems = configuration.problems();
             problems.retain(|problem| problem.fault != crate::robot::Fault::Disconnected);
         }
+        if problems.is_empty() {
+            check_reach(which, configuration)?;
+            problems = environment_problems(configuration);
+        }
         if !problems.is_empty() {
             return Err(Refusal::Unsound { which, problems });
         }
-        check_places(which, configuration)?;
     }
     if start.catalogue != goal.configuration.catalogue {
         return Err(Refusal::CataloguesDiffer);
@@ -204,33 +203,23 @@ pub(super) fn check(start: &Configuration, goal: &Goal) -> Result<(), Refusal> {
     check_mating(start)
 }
 
-/// Refuses modules out of reach, in the ground or in an obstacle.
-fn check_places(which: Which, configuration: &Configuration) -> Result<(), Refusal> {
-    let obstacles: Vec<Solid> = configuration.environment.obstacles.iter().map(Solid::from).collect();
-    for (index, module) in configuration.modules.iter().enumerate() {
-        if module.placement.cell.iter().any(|c| c.unsigned_abs() > LARGEST_COORDINATE) {
-            return Err(Refusal::TooFar { which, module: module.id.clone() });
-        }
-        let solid = Solid::new(configuration.module_type(index).body.shape.clone(), configuration.pose(index));
-        let skin = SKIN * solid.size();
-        let ground = configuration.environment.ground.as_ref();
-        let sunk = ground.is_some_and(|ground| solid.vertices().iter().any(|p| !(p.z >= ground.height - skin)));
-        if sunk || obstacles.iter().any(|obstacle| overlap(&solid, obstacle, skin)) {
-            return Err(Refusal::Overlap { which, module: module.id.clone() });
-        }
+/// Refuses modules out of reach.
+fn check_reach(which: Which, configuration: &Configuration) -> Result<(), Refusal> {
+    let is_far = |c: i32| c.unsigned_abs() > LARGEST_COORDINATE;
+    match configuration.modules.iter().find(|module| module.placement.cell.into_iter().any(is_far)) {
+        Some(module) => Err(Refusal::TooFar { which, module: module.id.clone() }),
+        None => Ok(()),
     }
-    Ok(())
 }
 
-/// Refuses modules whose faces could meet without being able to connect.
+/// Refuses modules whose faces could meet without being able to connect. Faces of
+/// one model connect, so it is enough to compare all modules with the first.
 fn check_mating(start: &Configuration) -> Result<(), Refusal> {
-    for a in &start.modules {
-        for b in &start.modules {
-            if start.catalogue.face_connector(a.module_type, b.module_type).is_none() {
-                let types = [a, b].map(|module| start.catalogue.module_types[module.module_type].name.clone());
-                return Err(Refusal::ConnectorsDoNotMate { types });
-            }
-        }
+    let types = start.modules.iter().map(|module| module.module_type);
+    let Some(first) = types.clone().next() else { return Ok(()) };
+    let name = |index: usize| start.catalogue.module_types[index].name.clone();
+    match types.into_iter().find(|&other| start.catalogue.face_connector(first, other).is_none()) {
+        Some(other) => Err(Refusal::ConnectorsDoNotMate { types: [first, other].map(name) }),
+        None => Ok(()),
     }
-    Ok(())
 }

@@ -19,13 +19,15 @@ use super::validate::{InvalidStructure, validate};
 /// The utilisation t is the smallest common factor on all rated strengths with
 /// which every free body can be in balance,
 ///
-///     t* = min t  subject to  balance, friction cones, s_l(w_l) <= t S_l,
+/// ```text
+/// t* = min t  subject to  balance, friction cones, s_l(w_l) <= t S_l,
+/// ```
 ///
 /// the internal stability margin is `1 - t*`. Both ends of the bracket are
 /// evaluated from wrench and twist fields on the structure's own data, for loads
 /// and directions that are meant up to a relative 1e-12. With
-/// [`Question::Decide`] the answer may stop at the first block that decides, and
-/// states of the other blocks stay zero.
+/// [`Question::Decide`] the answer may stop at the first block that exceeds the
+/// threshold: states of the other blocks stay zero and the upper end is infinite.
 ///
 /// # Errors
 /// Non-finite or out-of-range data, or indices that point nowhere; all of them at once.
@@ -49,6 +51,7 @@ pub fn assess(structure: &Structure, question: Question) -> Result<Assessment, V
     }
     for index in cyclic {
         if answer.settled(question) {
+            answer.stop();
             break;
         }
         let block = &pieces.blocks[index];
@@ -124,6 +127,12 @@ impl<'s> Answer<'s> {
                 Question::Decide(threshold) => self.utilisation.lower > threshold,
                 Question::Value => false,
             }
+    }
+
+    /// Leaves the other blocks unanswered: one of them may need more, or fall.
+    fn stop(&mut self) {
+        self.utilisation.upper = f64::INFINITY;
+        self.undecided_because = Some("the threshold is exceeded, the rest was not asked for".to_owned());
     }
 
     fn collapse_afloat(&mut self, root: usize, twist: Twist) {

@@ -218,3 +218,114 @@ impl<'g> Search<'g> {
         self.found.blocks.push(Block { root: unnumber(root), bodies, links });
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use petgraph::algo::connected_components;
+    use petgraph::graph::UnGraph;
+
+    use super::super::structure::{Body, Contact};
+    use super::*;
+    use crate::spatial::Vec3;
+
+    /// Bodies that touch as `pairs` say; 0 is the world, `i + 1` is body `i`.
+    fn touching(bodies: usize, pairs: &[[usize; 2]]) -> Structure {
+        let body = Body { mass: 1.0, com: Vec3::zeros(), fixed: false };
+        let contacts = pairs.iter().map(|&[a, b]| Contact {
+            body: a.max(b) - 1,
+            against: if a.min(b) == 0 { Anchor::World } else { Anchor::Body(a.min(b) - 1) },
+            position: Vec3::zeros(),
+            normal: Vec3::z(),
+            friction: 0.5,
+        });
+        Structure { bodies: vec![body; bodies], contacts: contacts.collect(), ..Structure::default() }
+    }
+
+    fn components(vertices: usize, pairs: impl Iterator<Item = [usize; 2]>) -> usize {
+        let mut graph = UnGraph::<(), ()>::default();
+        let nodes: Vec<_> = (0..vertices).map(|_| graph.add_node(())).collect();
+        for [a, b] in pairs {
+            graph.add_edge(nodes[a], nodes[b], ());
+        }
+        connected_components(&graph)
+    }
+
+    /// Random multigraphs; cuts found by taking away one thing at a time.
+    #[test]
+    fn blocks_meet_exactly_at_cut_vertices_and_single_links_are_bridges() {
+        let mut state = 1_u64;
+        let mut below = |bound: usize| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 33) as usize % bound
+        };
+        for _ in 0..2000 {
+            let bodies = 1 + below(8);
+            let mut pairs = Vec::new();
+            for _ in 0..below(13) {
+                let (a, b) = (below(bodies + 1), below(bodies + 1));
+                if a != b {
+                    pairs.push([a, b]);
+                }
+            }
+            let found = cut(&touching(bodies, &pairs));
+            let whole = components(bodies + 1, pairs.iter().copied());
+            assert_eq!(found.afloat.len() + 1, whole, "{pairs:?}");
+
+            let mut seen = vec![0; bodies + 1];
+            let mut links = BTreeSet::new();
+            for block in &found.blocks {
+                for vertex in block.bodies.iter().map(|&i| i + 1).chain([number(block.root)]) {
+                    seen[vertex] += 1;
+                }
+                for link in &block.links {
+                    let Link::Contact(i) = *link else { panic!("there are only contacts") };
+                    assert!(links.insert(i), "{pairs:?}: link {i} twice");
+                    let others = pairs.iter().enumerate().filter(|(j, _)| *j != i).map(|(_, pair)| *pair);
+                    let bridge = components(bodies + 1, others) > whole;
+                    assert_eq!(block.links.len() == 1, bridge, "{pairs:?}: link {i}");
+                }
+            }
+            assert_eq!(links.len(), pairs.len());
+            for (vertex, blocks) in seen.into_iter().enumerate() {
+                let others = pairs.iter().filter(|pair| !pair.contains(&vertex)).copied();
+                let alone = usize::from(blocks > 0);
+                // Without its links the vertex itself is one more component.
+                let cuts = components(bodies + 1, others) > whole + alone;
+                assert_eq!(blocks > 1, cuts, "{pairs:?}: vertex {vertex}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_block_comes_after_the_one_it_hangs_from() {
+        let found = cut(&touching(5, &[[0, 1], [1, 2], [2, 3], [1, 3], [3, 4], [4, 5]]));
+        let mut held = BTreeSet::from([0]);
+        for block in &found.blocks {
+            assert!(held.contains(&number(block.root)), "{block:?}");
+            held.extend(block.bodies.iter().map(|&i| i + 1));
+        }
+        assert_eq!(held.len(), 6);
+    }
+
+    #[test]
+    fn long_chains_and_long_rings_do_not_exhaust_the_stack() {
+        let count = 100_000;
+        let mut pairs: Vec<[usize; 2]> = (0..count).map(|i| [i, i + 1]).collect();
+        assert_eq!(cut(&touching(count, &pairs)).blocks.len(), count);
+        pairs.push([count, 0]);
+        let ring = cut(&touching(count, &pairs));
+        assert_eq!((ring.blocks.len(), ring.blocks[0].bodies.len()), (1, count));
+    }
+
+    #[test]
+    fn fixed_bodies_are_ground() {
+        let mut structure = touching(3, &[[0, 1], [1, 2], [2, 3], [1, 3]]);
+        structure.bodies[0].fixed = true;
+        let found = cut(&structure);
+        assert_eq!(found.blocks.len(), 1);
+        assert_eq!((found.blocks[0].root, &found.blocks[0].bodies), (Vertex::Ground, &vec![1, 2]));
+        assert_eq!(found.blocks[0].links.len(), 3);
+    }
+}

@@ -114,19 +114,19 @@ impl Problem<'_> {
         let mut dissipation = 0.0;
         for (&link, frame) in block.links.iter().zip(&program.frames) {
             let relative = frame.relative_twist(structure, |body| self.twist(twists, body));
-            let error = ROUNDING * self.velocity_size(frame, twists);
+            let error = self.velocity_error(frame, twists);
             let share = match link {
                 Link::Contact(i) => {
                     let friction = structure.contacts[i].friction;
                     let slack = relative.linear.z - friction * relative.linear.xy().norm();
-                    if !(slack >= error * (1.0 + friction)) {
+                    if !(slack >= error.linear * (1.0 + friction)) {
                         return None;
                     }
                     0.0
                 }
                 Link::Connection(i) => {
                     let connector = &structure.connectors[structure.connections[i].connector];
-                    dissipated(connector, &relative, error)?
+                    dissipated(connector, &relative, &error)?
                 }
             };
             dissipation += share;
@@ -149,18 +149,28 @@ impl Problem<'_> {
         Some((power / dissipation, shares))
     }
 
-    /// Size of the terms in a link's relative velocity.
-    fn velocity_size(&self, frame: &LinkFrame, twists: &[Twist]) -> f64 {
-        let mut size = 0.0;
+    /// Rounding of a link's relative twist.
+    fn velocity_error(&self, frame: &LinkFrame, twists: &[Twist]) -> VelocityError {
+        let (mut linear, mut angular) = (0.0, 0.0);
         for (side, _) in frame.sides() {
             if let Some(i) = local_body(self.block, side) {
                 let arm = frame.origin - self.structure.bodies[self.block.bodies[i]].com;
                 let twist = &twists[i];
-                size += (twist.linear.abs() + cross_size(&arm, &twist.angular.abs())).norm() + twist.angular.norm();
+                linear += (twist.linear.abs() + cross_size(&arm, &twist.angular.abs())).norm();
+                angular += twist.angular.norm();
             }
         }
-        size
+        VelocityError { linear: ROUNDING * linear, angular: ROUNDING * angular }
     }
+}
+
+/// Bounds on the errors of a relative twist's components.
+#[derive(Clone, Copy)]
+struct VelocityError {
+    /// In m/s.
+    linear: f64,
+    /// In rad/s.
+    angular: f64,
 }
 
 /// Rounding of a wrench that was just computed.
@@ -172,26 +182,26 @@ fn rounding(wrench: &Wrench) -> WrenchError {
 /// of the child, in the connection frame; `None` when the twist is not
 /// admissible, i.e. when the connector could resist it without limit. Each
 /// component of the twist is uncertain by `error`.
-fn dissipated(connector: &Connector, relative: &Twist, error: f64) -> Option<f64> {
+fn dissipated(connector: &Connector, relative: &Twist, error: &VelocityError) -> Option<f64> {
     let Twist { linear: v, angular: w } = relative;
     match &connector.model {
         Model::Cone { friction: [a, b], radius: [c, d, e] } => {
             let rubbing = norm(&[a * v.x, b * v.y, c * w.x, d * w.y, e * w.z]);
             let slack = v.z - rubbing;
-            let uncertain = error * (1.0 + a + b + c + d + e);
-            (slack >= uncertain).then_some(connector.strength * (v.z + error))
+            let uncertain = error.linear * (1.0 + a + b) + error.angular * (c + d + e);
+            (slack >= uncertain).then_some(connector.strength * (v.z + error.linear))
         }
         Model::Box { shear, tension, compression, bending, torsion } => {
             let components = [
-                (v.x, shear[0], shear[0]),
-                (v.y, shear[1], shear[1]),
-                (v.z, *tension, *compression),
-                (w.x, bending[0], bending[0]),
-                (w.y, bending[1], bending[1]),
-                (w.z, *torsion, *torsion),
+                (v.x, error.linear, shear[0], shear[0]),
+                (v.y, error.linear, shear[1], shear[1]),
+                (v.z, error.linear, *tension, *compression),
+                (w.x, error.angular, bending[0], bending[0]),
+                (w.y, error.angular, bending[1], bending[1]),
+                (w.z, error.angular, *torsion, *torsion),
             ];
             let mut total = 0.0;
-            for (velocity, opening_limit, closing_limit) in components {
+            for (velocity, error, opening_limit, closing_limit) in components {
                 let admissible = match (opening_limit.is_finite(), closing_limit.is_finite()) {
                     (true, true) => true,
                     (true, false) => velocity >= error,
@@ -211,12 +221,12 @@ fn dissipated(connector: &Connector, relative: &Twist, error: f64) -> Option<f64
         Model::Patch { friction, points } => {
             for p in points {
                 let at = relative.at(&crate::spatial::Vec3::new(p[0], p[1], 0.0));
-                let uncertain = error * (1.0 + friction) * (1.0 + p[0].abs() + p[1].abs());
+                let uncertain = (error.linear + error.angular * (p[0].abs() + p[1].abs())) * (1.0 + friction);
                 if !(at.z - friction * at.xy().norm() >= uncertain) {
                     return None;
                 }
             }
-            Some(connector.strength * (v.z + error))
+            Some(connector.strength * (v.z + error.linear))
         }
     }
 }

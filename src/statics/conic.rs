@@ -36,8 +36,12 @@ pub(super) struct Iterate {
     pub t: f64,
 }
 
+/// Iterations after which the solver gives up; it needs 8 to 25.
+const ITERATIONS: u32 = 60;
+
 /// Solves `program`. `None` when the solver could not even start or returned
-/// something that is not finite.
+/// something that is not finite. Where a structure can clamp itself, rewarding
+/// forces lets them grow without end: such a field still proves a bound.
 pub(super) fn solve(program: &Program, attempt: &Attempt) -> Option<Iterate> {
     let layout = Layout::new(program);
     let heads = program.groups.iter().filter(|group| group.cone != Cone::Free).count() as f64;
@@ -74,7 +78,7 @@ fn settings(attempt: &Attempt) -> Option<DefaultSettings<f64>> {
         .presolve_enable(false)
         .direct_solve_method("qdldl".to_owned())
         .max_threads(1)
-        .max_iter(120)
+        .max_iter(ITERATIONS)
         .tol_feas(attempt.tolerance)
         .tol_gap_abs(attempt.tolerance)
         .tol_gap_rel(attempt.tolerance)

@@ -110,3 +110,90 @@ fn patch(strength: f64, friction: f64, points: &[[f64; 2]], wrench: &Wrench, err
 fn around(value: f64, spread: f64, strength: f64) -> Bracket {
     Bracket::new((value - spread).max(0.0) / strength, (value + spread).max(0.0) / strength)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const NONE: WrenchError = WrenchError { force: Vec3::new(0.0, 0.0, 0.0), torque: Vec3::new(0.0, 0.0, 0.0) };
+
+    fn models() -> [Model; 3] {
+        [
+            Model::Cone { friction: [0.8, 0.5], radius: [0.02, 0.03, 0.01] },
+            Model::Box {
+                shear: [10.0, 20.0],
+                tension: 30.0,
+                compression: f64::INFINITY,
+                bending: [1.0, 2.0],
+                torsion: 3.0,
+            },
+            Model::Patch { friction: 0.4, points: vec![[0.04, 0.03], [-0.04, 0.04], [-0.03, -0.04], [0.04, -0.05]] },
+        ]
+    }
+
+    fn wrenches() -> impl Iterator<Item = Wrench> {
+        let part = |seed: i32| Vec3::from_fn(|k, _| f64::from((seed * (7 + 4 * k as i32)) % 11 - 5));
+        (1..40).map(move |i| Wrench::new(part(i), part(i * i + 3) * 0.03))
+    }
+
+    /// The failing twist is the dual: its power against the wrench is the demand,
+    /// against any other wrench a lower bound of that one's.
+    #[test]
+    fn failing_twists_support_the_demand() {
+        for model in models() {
+            let connector = Connector { name: String::new(), strength: 25.0, model };
+            for wrench in wrenches() {
+                let found = demand(&connector, &wrench, &NONE);
+                let Bracket { lower, upper } = found.utilisation;
+                assert!(upper - lower <= 1e-9 * upper.max(1.0), "{wrench:?}");
+                let power = |w: &Wrench| -found.failing.power(w);
+                if lower > 0.0 {
+                    assert!((power(&wrench) - lower).abs() <= 1e-9 * upper, "{wrench:?}: {} {lower}", power(&wrench));
+                    for other in wrenches() {
+                        let needed = demand(&connector, &other, &NONE).utilisation.upper;
+                        assert!(power(&other) <= needed * (1.0 + 1e-9) + 1e-9, "{wrench:?} {other:?}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn demand_is_convex_and_homogeneous() {
+        for model in models() {
+            let connector = Connector { name: String::new(), strength: 25.0, model };
+            let of = |w: &Wrench| demand(&connector, w, &NONE).utilisation;
+            for (a, b) in wrenches().zip(wrenches().skip(5)) {
+                let (sum, parts) = (of(&(a + b)), of(&a).upper + of(&b).upper);
+                assert!(sum.lower <= parts * (1.0 + 1e-9) + 1e-12, "{a:?} {b:?}");
+                let (once, thrice) = (of(&a), of(&(a * 3.0)));
+                assert!((thrice.upper - 3.0 * once.upper).abs() <= 1e-8 * thrice.upper.max(1.0));
+            }
+        }
+    }
+
+    /// One point carries no moment, two none about their line, and an origin on
+    /// the hull's edge none beyond it, whatever the preload.
+    #[test]
+    fn degenerate_patches_resist_what_they_can() {
+        let patch = |points: &[[f64; 2]], force: [f64; 3], torque: [f64; 3]| {
+            let model = Model::Patch { friction: 0.5, points: points.to_vec() };
+            let connector = Connector { name: String::new(), strength: 10.0, model };
+            demand(&connector, &Wrench::new(force.into(), torque.into()), &NONE).utilisation
+        };
+        let near = |found: Bracket, t: f64| (found.lower - t).abs() < 1e-6 && (found.upper - t).abs() < 1e-6;
+        let (point, line, edge) = ([[0.0, 0.0]], [[0.1, 0.0], [-0.1, 0.0]], [[0.1, 0.0], [-0.1, 0.0], [0.0, 0.1]]);
+        let found = patch(&point, [3.0, 0.0, -1.0], [0.0; 3]);
+        assert!(near(found, 0.7), "{found:?}");
+        assert_eq!(patch(&point, [0.0; 3], [0.0, 1.0, 0.0]).lower, f64::INFINITY);
+        assert_eq!(patch(&point, [3.0, 0.0, 9.0], [0.0, 0.0, 1.0]).lower, f64::INFINITY);
+        let found = patch(&line, [0.0; 3], [0.0, 1.0, 0.0]);
+        assert!(near(found, 1.0), "{found:?}");
+        assert_eq!(patch(&line, [0.0; 3], [1.0, 0.0, 0.0]).lower, f64::INFINITY);
+        // Pressure moves to (0, y) for a torque N y about x: only towards the hull.
+        let found = patch(&edge, [0.0; 3], [-1.0, 0.0, 0.0]);
+        assert_eq!(found.lower, f64::INFINITY, "{found:?}");
+        let found = patch(&edge, [0.0; 3], [1.0, 0.0, 0.0]);
+        assert!(near(found, 1.0), "{found:?}");
+    }
+}

@@ -3,8 +3,10 @@
 //! The contact forces `g_j` of the face's points must add up to the wrench and
 //! the preload, each in its friction cone. Only their total normal force
 //!
-//!     N*(f_x, f_y, tau) = min sum g_j,z   subject to   sum of the g_j's shear,
-//!                         bending and torsion as wanted, |g_j,t| <= mu g_j,z
+//! ```text
+//! N*(f_x, f_y, tau) = min sum g_j,z   subject to   sum of the g_j's shear,
+//!                     bending and torsion as wanted, |g_j,t| <= mu g_j,z
+//! ```
 //!
 //! depends on the points; the demand is `s = max(0, N* - f_z)`. Without shear
 //! and torsion, N* is where the centre of pressure reaches the hull's nearest
@@ -26,6 +28,10 @@ const ITERATIONS: usize = 60;
 
 /// Complementarity, relative to the value, at which it stops.
 const GAP: f64 = 1e-14;
+
+/// Relative size from which a direction of forces counts as one that points of a
+/// degenerate patch do not have, and a wrench as having a part in it.
+const UNHELD: f64 = 1e-11;
 
 type Rows = SVector<f64, 5>;
 
@@ -67,7 +73,15 @@ pub(super) fn least_normal_force(wrench: &Wrench, friction: f64, points: &[[f64;
         return NormalForce { total: Bracket::exact(f64::INFINITY), twist: slide };
     }
     let unit: Vec<[f64; 2]> = points.iter().map(|p| [p[0] / lever, p[1] / lever]).collect();
-    let solved = Program::new(friction, &unit, wanted / scale).solve();
+    let program = Program::new(friction, &unit, wanted / scale);
+    let beyond = program.unheld * program.wanted;
+    if !(beyond.norm() <= UNHELD) {
+        // No force of a single point, or of points in a row, has this direction.
+        let linear = Vec3::new(-beyond[0], -beyond[1], 0.0);
+        let angular = Vec3::new(-beyond[2], -beyond[3], -beyond[4]) / lever;
+        return NormalForce { total: Bracket::exact(f64::INFINITY), twist: Twist::new(linear, angular) };
+    }
+    let solved = program.solve();
     let y = solved.y;
     let total = Bracket::new((solved.total.lower * scale).max(bending.total.lower), solved.total.upper * scale);
     let linear = Vec3::new(-y[0], -y[1], 1.0);
@@ -109,7 +123,10 @@ struct Program<'p> {
     wanted: Rows,
     /// Positive normal forces whose centre of pressure is the origin.
     pressure: Vec<f64>,
-    /// Factor of `A A'`.
+    /// Projection onto the directions that no force of the points has: none for
+    /// points around the origin, some for a single point or points in a row.
+    unheld: SMatrix<f64, 5, 5>,
+    /// Factor of `A A'`, made regular in the directions of `unheld`.
     gram: Option<Cholesky<f64, nalgebra::Const<5>>>,
 }
 
@@ -120,9 +137,17 @@ struct Solved {
 
 impl<'p> Program<'p> {
     fn new(friction: f64, points: &'p [[f64; 2]], wanted: Rows) -> Self {
-        let mut program = Self { friction, points, wanted, pressure: central_pressure(points), gram: None };
+        let pressure = central_pressure(points);
+        let mut program = Self { friction, points, wanted, pressure, unheld: SMatrix::zeros(), gram: None };
         let identity: Vec<Scaling<3>> =
             points.iter().map(|_| Scaling::new(&[1.0, 0.0, 0.0], &[1.0, 0.0, 0.0])).collect();
+        let directions = program.normal_matrix(&identity).symmetric_eigen();
+        let smallest = UNHELD * directions.eigenvalues.amax();
+        for (value, direction) in directions.eigenvalues.iter().zip(directions.eigenvectors.column_iter()) {
+            if *value <= smallest {
+                program.unheld += direction * direction.transpose();
+            }
+        }
         program.gram = program.normal_matrix(&identity).cholesky();
         program
     }
@@ -226,7 +251,7 @@ impl<'p> Program<'p> {
                 matrix.set_column(row, &(matrix.column(row) + self.rows(j, &square)));
             }
         }
-        (matrix + matrix.transpose()) * 0.5
+        (matrix + matrix.transpose()) * 0.5 + self.unheld
     }
 
     /// Tightens the bracket with what the iterate proves: `y`, shrunk until it

@@ -1,6 +1,8 @@
 //! A block's critical stable state as a second-order cone program in standard form.
 //!
-//!     minimise t   subject to   A z = -L,   z in K
+//! ```text
+//! minimise t   subject to   A z = -L,   z in K
+//! ```
 //!
 //! One wrench per connection, and it is itself the cone variable, shifted by the
 //! preload: with every strength at its common bound `s_l = t S_l` a `cone`

@@ -13,14 +13,13 @@ use super::conic::{self, Attempt, Iterate};
 use super::interior_point;
 use super::loads::BodyLoad;
 use super::part::Part;
-use super::program::{Program, Purpose};
+use super::program::{Program, Purpose, local_body};
 use super::structure::Structure;
 use super::tolerances::VALUE_WIDTH;
 
-/// What the block's own interior-point method is asked for: an accuracy well
-/// inside the bracket's width, and twists inside their cones.
+/// Accuracy of t, relative to the larger of t and 1, that the block's own
+/// interior-point method is asked for: well inside the bracket's width.
 const TOLERANCE: f64 = 2e-8;
-const INSET: f64 = 1e-8;
 
 /// Ways of asking the general solver where that was not enough, tried in turn
 /// until the bracket is tight enough.
@@ -46,6 +45,10 @@ const FUSED_ATTEMPTS: [Attempt; 2] = [
 /// inadmissible one.
 const MIXES: [f64; 4] = [1e-6, 1e-4, 1e-2, 1e-1];
 
+/// Cosine of the angle between two supports' normals from which on they count as
+/// facing each other.
+const OPPOSITE: f64 = 0.5;
+
 /// Shares of the largest contact force below which a contact is left out, tried
 /// in turn until the rest balances.
 const IDLE: [f64; 4] = [0.0, 1e-6, 1e-4, 1e-2];
@@ -62,7 +65,10 @@ pub(super) fn assess_block(structure: &Structure, block: &Block, loads: &[BodyLo
     let program = Program::new(structure, block, loads, Purpose::Utilisation);
     let problem = Problem { structure, block, loads, program: &program };
     let mut best = Best::new(block);
-    if let Some(iterate) = interior_point::solve(&program, INSET, TOLERANCE) {
+    // Where supports face each other, begin with the attempt that bounds forces.
+    let first = usize::from(faces_itself(&problem));
+    let inset = ATTEMPTS[first].inset;
+    if let Some(iterate) = interior_point::solve(&program, inset, TOLERANCE) {
         best.improve(&problem, &iterate, question);
     }
     if best.upper.is_infinite()
@@ -71,7 +77,7 @@ pub(super) fn assess_block(structure: &Structure, block: &Block, loads: &[BodyLo
     {
         return Part::Collapses { mechanism };
     }
-    for attempt in &ATTEMPTS {
+    for attempt in ATTEMPTS[first..].iter().chain(&ATTEMPTS[..first]) {
         if best.answers(question) {
             break;
         }
@@ -95,6 +101,19 @@ pub(super) fn assess_block(structure: &Structure, block: &Block, loads: &[BodyLo
             )
         }),
     }
+}
+
+/// Whether two supports of the block press against each other, as floor and
+/// ceiling do, so that it could clamp itself between them.
+fn faces_itself(problem: &Problem<'_>) -> bool {
+    let Problem { block, program, .. } = problem;
+    let outward = program.frames.iter().filter_map(|frame| {
+        let sign =
+            frame.sides().into_iter().find_map(|(side, sign)| local_body(block, side).is_none().then_some(-sign))?;
+        Some(frame.axes.column(2) * sign)
+    });
+    let normals: Vec<_> = outward.collect();
+    normals.first().is_some_and(|first| normals.iter().any(|normal| normal.dot(first) < -OPPOSITE))
 }
 
 /// Nothing to hold: no force anywhere.

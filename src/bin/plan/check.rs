@@ -17,13 +17,7 @@ use crate::{files, output};
 /// # Errors
 /// The output cannot be written.
 pub fn run(arguments: &CheckArguments) -> io::Result<Exit> {
-    let file = match files::read(&arguments.file) {
-        Ok(file) => file,
-        Err(problem) => {
-            output::message(&problem)?;
-            return Ok(Exit::BadInput);
-        }
-    };
+    let file = files::read(&arguments.file);
     let named = match read_checkable(&file, &files::resolve) {
         Ok(Checkable::Structure(named)) => named,
         Ok(Checkable::Configuration(configuration)) => NamedStructure::of_configuration(&configuration),
@@ -33,20 +27,15 @@ pub fn run(arguments: &CheckArguments) -> io::Result<Exit> {
     let answer = match assess(&named.structure, Question::Value) {
         Ok(answer) => answer,
         Err(problems) => {
-            for problem in problems {
-                output::message(&format!("{}: {}: {}", file.name, problem.place, problem.problem))?;
-            }
-            return Ok(Exit::BadInput);
+            let reasons = problems.iter().map(|problem| format!("{}: {}", problem.place, problem.problem));
+            return output::refused(&file.name, reasons, arguments.json);
         }
     };
     let seconds = clock.elapsed().as_secs_f64();
     if arguments.json {
         match write_check(&named, &answer, seconds) {
             Ok(text) => output::result(&text)?,
-            Err(problem) => {
-                output::message(&format!("{}: {problem}", file.name))?;
-                return Ok(Exit::Undecided);
-            }
+            Err(problem) => return output::refused(&file.name, [problem.to_string()], true),
         }
     } else {
         output::result(&report(&named, &answer, arguments.top, seconds))?;

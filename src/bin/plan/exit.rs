@@ -1,6 +1,5 @@
 //! How the program ends.
 
-use std::io;
 use std::process::ExitCode;
 
 /// The exit codes; a bug exits with 101, bad usage with clap's 2.
@@ -12,7 +11,7 @@ pub enum Exit {
     No,
     /// Nothing found within the limits; verdict undecided.
     Undecided,
-    /// All problems of the input are listed.
+    /// The input cannot be used, or the output cannot be written; it is said why.
     BadInput,
     /// The program contradicts itself.
     Bug,
@@ -27,15 +26,5 @@ impl From<Exit> for ExitCode {
             Exit::BadInput => 30,
             Exit::Bug => 101,
         })
-    }
-}
-
-/// A reader that has seen enough, as in `plan check FILE | head -1`, is no failure.
-impl From<io::Error> for Exit {
-    fn from(error: io::Error) -> Self {
-        match error.kind() {
-            io::ErrorKind::BrokenPipe => Self::Yes,
-            _ => Self::BadInput,
-        }
     }
 }

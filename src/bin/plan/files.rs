@@ -1,26 +1,19 @@
 //! Files by name.
 
-use std::fs;
+use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
-use steadfast::io::SourceFile;
+use steadfast::io::{LARGEST_FILE, SourceFile};
 
-/// Reads a file, or standard input when it is called `-`.
-///
-/// # Errors
-/// A sentence for the user.
-pub fn read(path: &Path) -> Result<SourceFile, String> {
+/// Reads a file, or standard input when it is called `-`. A failure is
+/// part of the result: the library's readers report it with all else.
+pub fn read(path: &Path) -> SourceFile {
     let name = path.display().to_string();
-    let bytes = if name == "-" {
-        let mut bytes = Vec::new();
-        io::stdin().lock().read_to_end(&mut bytes).map(|_| bytes)
-    } else {
-        fs::read(path)
-    };
+    let bytes = if name == "-" { all(io::stdin().lock()) } else { File::open(path).and_then(all) };
     match bytes {
-        Ok(bytes) => Ok(SourceFile::new(name, bytes)),
-        Err(error) => Err(format!("{name}: {error}")),
+        Ok(bytes) => SourceFile::new(name, bytes),
+        Err(error) => SourceFile::unreadable(name, error.to_string()),
     }
 }
 
@@ -30,6 +23,13 @@ pub fn read(path: &Path) -> Result<SourceFile, String> {
 /// A sentence for the user.
 pub fn resolve(from: &str, reference: &str) -> Result<SourceFile, String> {
     let path = Path::new(from).parent().unwrap_or(Path::new("")).join(reference);
-    let bytes = fs::read(&path).map_err(|error| error.to_string())?;
+    let bytes = File::open(&path).and_then(all).map_err(|error| error.to_string())?;
     Ok(SourceFile::new(path.display().to_string(), bytes))
+}
+
+/// All bytes, or one more than the library takes: endless files end here.
+fn all(reader: impl Read) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    reader.take(LARGEST_FILE as u64 + 1).read_to_end(&mut bytes)?;
+    Ok(bytes)
 }

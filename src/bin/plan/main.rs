@@ -35,5 +35,10 @@ fn main() -> ExitCode {
             Arguments::command().error(ErrorKind::MissingRequiredArgument, "START and GOAL are missing").exit()
         }
     };
-    exit.unwrap_or_else(Exit::from).into()
+    let exit = exit.unwrap_or_else(|error| {
+        // Nobody is left to tell when this fails as well.
+        let _ = output::message(&format!("error: the output cannot be written: {error}"));
+        Exit::BadInput
+    });
+    exit.into()
 }

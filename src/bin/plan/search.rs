@@ -31,8 +31,8 @@ pub fn run(arguments: &PlanningArguments) -> io::Result<Exit> {
     let report = match search(arguments, &problem) {
         Ok(Ok(report)) => report,
         Ok(Err(refusal)) => {
-            output::message(&format!("error: {refusal}"))?;
-            return Ok(Exit::BadInput);
+            let file = arguments.start.display().to_string();
+            return output::refused(&file, [refusal.to_string()], arguments.json);
         }
         Err(trouble) => {
             output::message(&format!("error: {trouble}"))?;
@@ -77,15 +77,7 @@ pub fn run(arguments: &PlanningArguments) -> io::Result<Exit> {
 }
 
 fn read(arguments: &PlanningArguments) -> io::Result<Result<Problem, Exit>> {
-    let (start, goal) = match (files::read(&arguments.start), files::read(&arguments.goal)) {
-        (Ok(start), Ok(goal)) => (start, goal),
-        (start, goal) => {
-            for problem in [start.err(), goal.err()].into_iter().flatten() {
-                output::message(&problem)?;
-            }
-            return Ok(Err(Exit::BadInput));
-        }
-    };
+    let (start, goal) = (files::read(&arguments.start), files::read(&arguments.goal));
     match read_problem(&start, &goal, &files::resolve) {
         Ok(problem) => Ok(Ok(problem)),
         Err(diagnostics) => output::bad_input(&diagnostics, arguments.json).map(Err),

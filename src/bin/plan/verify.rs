@@ -16,28 +16,22 @@ use crate::{files, naming, output};
 /// # Errors
 /// The output cannot be written.
 pub fn run(arguments: &VerifyArguments) -> io::Result<Exit> {
-    let file = match files::read(&arguments.plan) {
-        Ok(file) => file,
-        Err(problem) => {
-            output::message(&problem)?;
-            return Ok(Exit::BadInput);
-        }
-    };
+    let file = files::read(&arguments.plan);
     let document = match read_plan(&file) {
         Ok(document) => document,
         Err(diagnostics) => return output::bad_input(&diagnostics, false),
     };
-    if document.plans.is_empty() {
+    if document.plans().next().is_none() {
         output::result("NOTHING TO VERIFY: the file holds no plan\n")?;
         return Ok(Exit::Undecided);
     }
     let mut exit = Exit::Yes;
     let mut text = String::new();
-    for index in 0..document.plans.len() {
+    for (index, plan) in document.plans().enumerate() {
         if index > 0 {
             text.push_str(&format!("\nalternative {index}: "));
         }
-        match verify(&document, index) {
+        match verify(&document, index, plan) {
             Ok((verdict, verified)) => {
                 text.push_str(&verdict);
                 if !verified {
@@ -45,8 +39,7 @@ pub fn run(arguments: &VerifyArguments) -> io::Result<Exit> {
                 }
             }
             Err(problem) => {
-                output::message(&format!("error: {}: {problem}", file.name))?;
-                return Ok(Exit::BadInput);
+                return output::refused(&file.name, [problem], false);
             }
         }
     }
@@ -55,15 +48,12 @@ pub fn run(arguments: &VerifyArguments) -> io::Result<Exit> {
 }
 
 /// The verdict on one of the file's plans, for people, and whether it verifies.
-fn verify(document: &PlanDocument, index: usize) -> Result<(String, bool), String> {
+fn verify(document: &PlanDocument, index: usize, plan: &Plan) -> Result<(String, bool), String> {
     let start = &document.problem.start;
-    let plan = match document.plans[index].to_plan(start) {
-        Ok(plan) => plan,
-        Err(contradiction) => return Ok((format!("NOT VERIFIED: {contradiction}\n"), false)),
-    };
-    let found =
-        replay(start, &document.problem.goal, &plan, start.require.margin).map_err(|refusal| refusal.to_string())?;
-    if found.is_verified() {
+    let required = document.report.required.unwrap_or(start.require.margin);
+    let found = replay(start, &document.problem.goal, plan, required).map_err(|refusal| refusal.to_string())?;
+    let contradictions: Vec<_> = document.contradictions_of(index).collect();
+    if found.is_verified() && contradictions.is_empty() {
         let (states, margin) = (found.oracle_solves, found.margin.lower);
         let text = format!(
             "VERIFIED: {} actions replayed over {states} states, smallest margin {margin:.4}\n",
@@ -72,8 +62,12 @@ fn verify(document: &PlanDocument, index: usize) -> Result<(String, bool), Strin
         return Ok((text, true));
     }
     let mut text = "NOT VERIFIED\n".to_string();
+    for contradiction in contradictions {
+        let action = naming::action(start, &plan.actions[contradiction.action].action);
+        text.push_str(&format!("  action {} ({action}): {contradiction}\n", contradiction.action + 1));
+    }
     for failure in &found.failures {
-        text.push_str(&format!("  {}\n", sentence(start, Some(&plan), failure)));
+        text.push_str(&format!("  {}\n", sentence(start, Some(plan), failure)));
     }
     Ok((text, false))
 }

@@ -13,13 +13,16 @@ mod faults;
 mod goal;
 mod matching;
 mod names;
+mod outcome;
 mod plan;
 mod rotation;
+mod sequence;
 mod structure;
 
 use super::diagnostics::Diagnostics;
-use super::document::{Checkable, NamedStructure, PlanDocument, Problem, Resolve, SourceFile};
+use super::document::{Checkable, NamedStructure, Problem, Resolve, SourceFile};
 use super::findings::Findings;
+use super::plan_document::PlanDocument;
 use crate::robot::{Catalogue, Configuration};
 
 /// Reads a `structure/1` file.
@@ -85,8 +88,8 @@ pub fn read_checkable(file: &SourceFile, resolve: Resolve<'_>) -> Result<Checkab
     findings.finish(value)
 }
 
-/// Reads a `plan/1` file. Checks its form and its names; whether the plan
-/// holds is for a replay to say.
+/// Reads a `plan/1` file. Checks its form and its names; whether the plan holds is
+/// for a replay to say, and what the file says against itself is kept for the verdict.
 ///
 /// # Errors
 /// All problems of the file at once.

@@ -1,189 +1,95 @@
-//! `plan/1` to a plan with its problem.
+//! `plan/1` to what the planner reported, with its problem.
 
 use super::super::codes;
-use super::super::document::{
-    PlanBottleneck, PlanDocument, PlanObjective, PlanOutcome, PlanProof, PlanSequence, PlanStatistics, PlannedAction,
-    PlannedStep, no_references,
-};
+use super::super::document::no_references;
 use super::super::findings::{Findings, Place};
+use super::super::plan_document::PlanDocument;
 use super::super::wire;
-use super::connections::ports_of;
 use super::decode::decode;
 use super::goal::read_problem;
 use super::names::Names;
-use crate::robot::{Face, Port};
-use crate::statics::Bracket;
+use super::outcome::outcome;
+use super::sequence::{Parts, Reader};
+use crate::reconfigure::{Objective, Outcome, Proof, Report, Statistics};
 
 pub(super) fn read(root: &Place<'_>, findings: &mut Findings) -> Option<PlanDocument> {
     let wire: wire::Plan = decode("plan", root, findings)?;
     let problem = read_problem(Some(&root.key("start")), Some(&root.key("goal")), &no_references, findings)?;
     let ids = problem.start.modules.iter().map(|module| module.id.as_str()).collect();
     let modules = Names::new("modules", ids, |_| root.clone(), findings);
+    let mut reader = Reader { start: &problem.start, modules: &modules, contradictions: Vec::new() };
 
-    let mut plans = Vec::new();
-    if let Some(actions) = &wire.actions {
-        let moves = wire.moves.unwrap_or_default();
-        plans.push(sequence((wire.margin, moves, wire.bottleneck.as_ref(), actions), &modules, root, findings));
-    }
-    for (index, other) in wire.alternatives.iter().enumerate() {
-        let place = root.key("alternatives").index(index);
-        let parts = (other.margin, other.moves, other.bottleneck.as_ref(), other.actions.as_slice());
-        plans.push(sequence(parts, &modules, &place, findings));
-    }
-    check_outcome(&wire, root, findings);
-    let statistics = PlanStatistics {
-        expanded: wire.statistics.expanded,
-        oracle_solves: wire.statistics.oracle_solves,
-        decided_by_bounds: wire.statistics.decided_by_bounds,
-        seconds: wire.statistics.seconds.0,
-    };
-    let plans = plans.into_iter().collect::<Option<_>>()?;
-    drop(modules);
-    Some(PlanDocument {
-        outcome: outcome(wire.outcome),
-        objective: objective(wire.objective),
-        proof: proof(&wire.proof),
-        plans,
-        problem,
-        statistics,
-    })
-}
-
-fn check_outcome(wire: &wire::Plan, root: &Place<'_>, findings: &mut Findings) {
-    match (wire.outcome, wire.actions.is_some()) {
-        (wire::Outcome::Solved, false) => {
-            let message = "a solved problem has a plan, but `actions` is missing";
-            findings.add(
-                &root.key("outcome"),
-                codes::PLAN,
-                message,
-                "an empty list is the plan that does nothing".to_string(),
-            );
-        }
-        (wire::Outcome::Impossible, true) => {
-            findings.add(
-                &root.key("outcome"),
-                codes::PLAN,
-                "an impossible problem has no plan, but there are `actions`",
-                "leave the actions out".to_string(),
-            );
-        }
-        _ => {}
-    }
-}
-
-type Parts<'w> = (Option<wire::Bracket>, u32, Option<&'w wire::Bottleneck>, &'w [wire::Action]);
-
-fn sequence(
-    (margin, moves, bottleneck, actions): Parts<'_>,
-    modules: &Names<'_>,
-    place: &Place<'_>,
-    findings: &mut Findings,
-) -> Option<PlanSequence> {
-    let actions_place = place.key("actions");
-    let steps: Vec<_> =
-        actions.iter().enumerate().map(|(i, wire)| step(wire, modules, &actions_place.index(i), findings)).collect();
-    let bottleneck = bottleneck.map(|wire| {
-        let place = place.key("bottleneck");
-        if let Some(action) = wire.action.filter(|action| *action as usize >= actions.len()) {
-            let message = format!("there is no action {action}, only {} of them, counted from 0", actions.len());
-            findings.add(&place.key("action"), codes::PLAN, message, "null means the start itself".to_string());
-        }
-        let connection = wire.connection.as_ref().map(|ports| pair(ports, modules, &place.key("connection"), findings));
-        let action = wire.action.map(|action| action as usize);
-        PlanBottleneck { action, phase: wire.phase.0, connection: connection.flatten() }
+    let best = wire.actions.as_ref().map(|actions| {
+        let parts = Parts { margin: wire.margin, moves: wire.moves, bottleneck: wire.bottleneck.as_ref(), actions };
+        reader.sequence(0, parts, root, findings)
     });
-    let counted =
-        actions.iter().filter(|a| matches!(a, wire::Action::Slide { .. } | wire::Action::Pivot { .. })).count();
-    if moves as usize != counted {
-        let message = format!("says {moves}, but {counted} of the actions are moves");
-        findings.add(&place.key("moves"), codes::PLAN, message, "slides and pivots are moves".to_string());
+    let mut alternatives = Vec::with_capacity(wire.alternatives.len());
+    for (index, other) in wire.alternatives.iter().enumerate() {
+        let wire::Alternative { margin, moves, bottleneck, actions } = other;
+        let parts = Parts { margin: *margin, moves: Some(*moves), bottleneck: bottleneck.as_ref(), actions };
+        let place = root.key("alternatives").index(index);
+        alternatives.push(reader.sequence(index + 1, parts, &place, findings));
     }
-    let actions = steps.into_iter().collect::<Option<_>>()?;
-    Some(PlanSequence { margin: margin.map(bracket), moves: moves as usize, bottleneck, actions })
-}
-
-fn step(wire: &wire::Action, modules: &Names<'_>, place: &Place<'_>, findings: &mut Findings) -> Option<PlannedStep> {
-    let (action, margin) = match wire {
-        wire::Action::Attach { ports, margin } => {
-            (PlannedAction::Attach(pair(ports, modules, &place.key("ports"), findings)?), margin)
-        }
-        wire::Action::Detach { ports, margin } => {
-            (PlannedAction::Detach(pair(ports, modules, &place.key("ports"), findings)?), margin)
-        }
-        wire::Action::Slide { module, to, margin } => {
-            let module = modules.find(module, &place.key("module"), findings)?;
-            (PlannedAction::Slide { module, to: to.cell }, margin)
-        }
-        wire::Action::Pivot { module, support, axis, angle_deg, to, margin } => {
-            let module = modules.find(module, &place.key("module"), findings);
-            let support = modules.find(support, &place.key("support"), findings);
-            if module.is_some() && module == support {
-                let message = "a module cannot support itself";
-                findings.add(
-                    &place.key("support"),
-                    codes::SELF_CONNECTION,
-                    message,
-                    "name the neighbour that carries the hinge".to_string(),
-                );
-            }
-            if !matches!(angle_deg, 90 | 180) {
-                let message = format!("a cube pivots by 90 or 180 degrees, found {angle_deg}");
-                findings.add(
-                    &place.key("angle_deg"),
-                    codes::OUT_OF_RANGE,
-                    message,
-                    "the direction is in `axis`".to_string(),
-                );
-            }
-            let quarter_turns = if *angle_deg == 90 { 1 } else { 2 };
-            let axis = face(*axis);
-            (PlannedAction::Pivot { module: module?, support: support?, axis, quarter_turns, to: to.cell }, margin)
-        }
+    let contradictions = reader.contradictions;
+    if wire.actions.is_none() && !wire.alternatives.is_empty() {
+        let message = "there are alternatives to a plan, but no `actions`";
+        let hint = "the best plan stands in `actions`, the further ones in `alternatives`";
+        findings.add(&root.key("alternatives"), codes::PLAN, message, hint.to_string());
+    }
+    let outcome = outcome(&wire, &problem, root, findings);
+    let statistics = statistics(&wire.statistics, &root.key("statistics"), findings);
+    drop(modules);
+    let plan = match best {
+        Some(plan) => Some(plan?),
+        None => None,
     };
-    Some(PlannedStep { action, margin: margin.map(bracket) })
+    let outcome = outcome?;
+    let report = Report {
+        proof: proof(&wire.proof, &outcome),
+        outcome,
+        objective: match wire.objective {
+            wire::Objective::Margin => Objective::Margin,
+            wire::Objective::Moves => Objective::Moves,
+        },
+        required: wire.required_margin.map(|margin| margin.0),
+        plan,
+        alternatives: alternatives.into_iter().collect::<Option<_>>()?,
+        statistics,
+    };
+    Some(PlanDocument { problem, report, contradictions })
 }
 
-fn pair(ports: &[String; 2], modules: &Names<'_>, place: &Place<'_>, findings: &mut Findings) -> Option<[Port; 2]> {
-    let [a, b] = ports_of(ports, modules, place, findings);
-    Some([a?, b?])
-}
-
-/// An end where nothing was proved is infinite.
-fn bracket(wire: wire::Bracket) -> Bracket {
-    Bracket::new(wire.lower.0.unwrap_or(f64::NEG_INFINITY), wire.upper.0.unwrap_or(f64::INFINITY))
-}
-
-fn outcome(wire: wire::Outcome) -> PlanOutcome {
-    match wire {
-        wire::Outcome::Solved => PlanOutcome::Solved,
-        wire::Outcome::Impossible => PlanOutcome::Impossible,
-        wire::Outcome::OutOfBudget => PlanOutcome::OutOfBudget,
-    }
-}
-
-fn objective(wire: wire::Objective) -> PlanObjective {
-    match wire {
-        wire::Objective::Margin => PlanObjective::Margin,
-        wire::Objective::Moves => PlanObjective::Moves,
-    }
-}
-
-fn proof(wire: &wire::Proof) -> PlanProof {
-    PlanProof {
+/// A bound that was not proved says nothing; without any plan, everything holds of all plans.
+fn proof(wire: &wire::Proof, outcome: &Outcome) -> Proof {
+    let nothing = match outcome {
+        Outcome::Impossible(_) => (f64::NEG_INFINITY, u32::MAX),
+        Outcome::Solved | Outcome::OutOfBudget(_) => (f64::INFINITY, 0),
+    };
+    Proof {
         optimal: wire.optimal,
-        margin_at_most: wire.margin_at_most.map(|margin| margin.0),
-        moves_at_least: wire.moves_at_least.map(|moves| moves as usize),
+        margin_at_most: wire.margin_at_most.map_or(nothing.0, |margin| margin.0),
+        moves_at_least: wire.moves_at_least.unwrap_or(nothing.1),
     }
 }
 
-fn face(wire: wire::Axis) -> Face {
-    match wire {
-        wire::Axis::NegX => Face::NegX,
-        wire::Axis::PosX => Face::PosX,
-        wire::Axis::NegY => Face::NegY,
-        wire::Axis::PosY => Face::PosY,
-        wire::Axis::NegZ => Face::NegZ,
-        wire::Axis::PosZ => Face::PosZ,
+fn statistics(wire: &wire::Statistics, place: &Place<'_>, findings: &mut Findings) -> Statistics {
+    let (certified, ruled_out) = (wire.certified.unwrap_or_default(), wire.ruled_out.unwrap_or_default());
+    let others = wire.decided_by_bounds.saturating_sub(ruled_out);
+    let statistics = Statistics {
+        expanded: wire.expanded,
+        states: wire.states.unwrap_or_default(),
+        generated: wire.generated.unwrap_or_else(|| certified.saturating_add(others)),
+        certified,
+        ruled_out,
+        oracle_solves: wire.oracle_solves,
+        bytes: wire.memory_bytes.unwrap_or_default(),
+        seconds: wire.seconds.0,
+    };
+    let decided = statistics.decided_by_bounds();
+    if wire.decided_by_bounds != decided {
+        let message = format!("says {}, but the counts make it {decided}", wire.decided_by_bounds);
+        let hint = "it is `generated` less `certified`, plus `ruled_out`".to_string();
+        findings.add(&place.key("decided_by_bounds"), codes::PLAN, message, hint);
     }
+    statistics
 }

@@ -3,15 +3,18 @@
 //! The JSON Schemas, which also check every file that is read, are made from
 //! these types. Knows no core type; [`super::read`] and [`super::write`] convert.
 
+mod action;
 mod catalogue;
 mod check;
 mod configuration;
 mod connector;
 mod errors;
 mod number;
+mod outcome;
 mod plan;
 mod structure;
 
+pub(super) use action::{Action, Axis, CellTarget};
 pub(super) use catalogue::{BodyType, Catalogue, CatalogueFormat, Faces, ModuleType, Motion, Ports, Shape};
 pub(super) use check::{Check, CheckFormat, CheckedConnection, CheckedContact, LeftOut, Verdict, Wrench};
 pub(super) use configuration::{
@@ -21,7 +24,6 @@ pub(super) use configuration::{
 pub(super) use connector::Connector;
 pub(super) use errors::{Errors, ErrorsFormat, FileError};
 pub(super) use number::{Bound, Limit, NonNegative, Positive, Real, reals};
-pub(super) use plan::{
-    Action, Alternative, Axis, Bottleneck, Bracket, CellTarget, Objective, Outcome, Plan, PlanFormat, Proof, Statistics,
-};
+pub(super) use outcome::{Impossible, Outcome, StoppedBy, Which};
+pub(super) use plan::{Alternative, Bottleneck, Bracket, Objective, Plan, PlanFormat, Proof, Statistics};
 pub(super) use structure::{Body, Connection, Contact, Load, Structure, StructureFormat};

@@ -48,7 +48,7 @@ fn finite<S: Serializer>(value: f64, serializer: S) -> Result<S::Ok, S::Error> {
     if value.is_finite() {
         serializer.serialize_f64(value)
     } else {
-        Err(serde::ser::Error::custom(format!("{value} cannot be written as JSON")))
+        Err(serde::ser::Error::custom(format!("the number {value}")))
     }
 }
 

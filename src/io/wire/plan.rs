@@ -3,8 +3,10 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::action::Action;
 use super::configuration::Configuration;
 use super::number::{Bound, NonNegative, Real};
+use super::outcome::{Impossible, Outcome, StoppedBy};
 
 /// Name and version of the format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -22,8 +24,20 @@ pub(crate) struct Plan {
     pub(crate) format: PlanFormat,
     /// How the search ended.
     pub(crate) outcome: Outcome,
+    /// Why there is no plan, in a sentence for people; null unless impossible.
+    #[serde(default)]
+    pub(crate) impossible_because: Option<String>,
+    /// Why there is no plan, for programs; null unless impossible.
+    #[serde(default)]
+    pub(crate) impossible: Option<Impossible>,
+    /// What ended the search without an answer; null unless out of budget.
+    #[serde(default)]
+    pub(crate) stopped_by: Option<StoppedBy>,
     /// What it optimised.
     pub(crate) objective: Objective,
+    /// Margin that every transient state must have; null for plans made by geometry alone.
+    #[serde(default)]
+    pub(crate) required_margin: Option<Real>,
     /// Smallest margin of the best plan's transient states; null without a plan or when unknown.
     #[serde(default)]
     pub(crate) margin: Option<Bracket>,
@@ -47,18 +61,6 @@ pub(crate) struct Plan {
     pub(crate) goal: Configuration,
     /// What the search did.
     pub(crate) statistics: Statistics,
-}
-
-/// How a search ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum Outcome {
-    /// A plan was found.
-    Solved,
-    /// It is proved that there is none.
-    Impossible,
-    /// Nothing was found within the limits.
-    OutOfBudget,
 }
 
 /// What a search optimised.
@@ -126,96 +128,31 @@ pub(crate) struct Alternative {
     pub(crate) actions: Vec<Action>,
 }
 
-/// One action of a plan. Ports are named by the module's own faces, as in `a:+z`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(tag = "kind", rename_all = "lowercase", deny_unknown_fields)]
-pub(crate) enum Action {
-    /// Two coinciding faces engage.
-    Attach {
-        /// The two ports.
-        ports: [String; 2],
-        /// Smallest margin of its transient states; null when unknown.
-        #[serde(default)]
-        margin: Option<Bracket>,
-    },
-    /// An engaged connection opens.
-    Detach {
-        /// The two ports.
-        ports: [String; 2],
-        /// Smallest margin of its transient states; null when unknown.
-        #[serde(default)]
-        margin: Option<Bracket>,
-    },
-    /// A module slides over the faces of two coplanar neighbours.
-    Slide {
-        /// Which module.
-        module: String,
-        /// Where it ends.
-        to: CellTarget,
-        /// Smallest margin of its transient states; null when unknown.
-        #[serde(default)]
-        margin: Option<Bracket>,
-    },
-    /// A module turns about an edge that it shares with a neighbour.
-    Pivot {
-        /// Which module.
-        module: String,
-        /// The neighbour that carries the hinge.
-        support: String,
-        /// World direction that the turn is right-handed about.
-        axis: Axis,
-        /// 90 or 180.
-        angle_deg: u32,
-        /// Where it ends.
-        to: CellTarget,
-        /// Smallest margin of its transient states; null when unknown.
-        #[serde(default)]
-        margin: Option<Bracket>,
-    },
-}
-
-/// Where a lattice module ends.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct CellTarget {
-    /// The cell.
-    #[schemars(inner(range(min = -1_000_000, max = 1_000_000)))]
-    pub(crate) cell: [i32; 3],
-}
-
 /// What a search did.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Statistics {
     /// States expanded.
     pub(crate) expanded: u64,
+    /// Distinct states met; null when not counted.
+    #[serde(default)]
+    pub(crate) states: Option<u64>,
+    /// Transitions generated; null when not counted.
+    #[serde(default)]
+    pub(crate) generated: Option<u64>,
+    /// Transitions whose margin was asked for; null when not counted.
+    #[serde(default)]
+    pub(crate) certified: Option<u64>,
+    /// Of those, the ones that the moving module alone ruled out; null when not counted.
+    #[serde(default)]
+    pub(crate) ruled_out: Option<u64>,
     /// Exact oracle calls.
     pub(crate) oracle_solves: u64,
-    /// States that bounds decided without a solve.
+    /// Transitions for which the whole robot was never assessed.
     pub(crate) decided_by_bounds: u64,
+    /// Peak memory of the search, approximately; null when not counted.
+    #[serde(default)]
+    pub(crate) memory_bytes: Option<u64>,
     /// Wall-clock time in s.
     pub(crate) seconds: NonNegative,
-}
-
-/// A signed world axis.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-pub(crate) enum Axis {
-    /// Along -x.
-    #[serde(rename = "-x")]
-    NegX,
-    /// Along +x.
-    #[serde(rename = "+x")]
-    PosX,
-    /// Along -y.
-    #[serde(rename = "-y")]
-    NegY,
-    /// Along +y.
-    #[serde(rename = "+y")]
-    PosY,
-    /// Along -z.
-    #[serde(rename = "-z")]
-    NegZ,
-    /// Along +z.
-    #[serde(rename = "+z")]
-    PosZ,
 }

@@ -4,7 +4,9 @@ mod check;
 mod configuration;
 mod connector;
 mod errors;
+mod outcome;
 mod plan;
+mod sequence;
 mod structure;
 
 use std::fmt;
@@ -12,31 +14,38 @@ use std::fmt;
 use serde::Serialize;
 
 use super::diagnostics::Diagnostics;
-use super::document::{NamedStructure, PlanDocument};
+use super::document::NamedStructure;
+use super::plan_document::PlanDocument;
 use super::{layout, wire};
 use crate::robot::Configuration;
 use crate::spatial::{Rotation, Vec3};
 use crate::statics::{Assessment, Bracket};
 
-/// A value holds a NaN or an infinity where JSON has no way to say so.
+/// A value that its format has no way to say: a NaN, an infinity, or a plan that is none.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct NotFinite {
+pub struct Unwritable {
     problem: String,
 }
 
-impl fmt::Display for NotFinite {
+impl Unwritable {
+    fn new(what: impl fmt::Display) -> Self {
+        Self { problem: format!("cannot be written: {what}") }
+    }
+}
+
+impl fmt::Display for Unwritable {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.problem)
     }
 }
 
-impl std::error::Error for NotFinite {}
+impl std::error::Error for Unwritable {}
 
 /// Writes a `structure/1` file that reads back equal, bit for bit.
 ///
 /// # Errors
 /// A number that is not finite, other than an unlimited limit of a box.
-pub fn write_structure(structure: &NamedStructure) -> Result<String, NotFinite> {
+pub fn write_structure(structure: &NamedStructure) -> Result<String, Unwritable> {
     text(&structure::wire(structure))
 }
 
@@ -45,7 +54,7 @@ pub fn write_structure(structure: &NamedStructure) -> Result<String, NotFinite> 
 ///
 /// # Errors
 /// A number that is not finite, other than an unlimited limit of a box.
-pub fn write_configuration(configuration: &Configuration) -> Result<String, NotFinite> {
+pub fn write_configuration(configuration: &Configuration) -> Result<String, Unwritable> {
     text(&configuration::start(configuration))
 }
 
@@ -53,9 +62,10 @@ pub fn write_configuration(configuration: &Configuration) -> Result<String, NotF
 /// nothing was proved is `null`.
 ///
 /// # Errors
-/// A number that is not finite, other than an unlimited limit or an unproved end.
-pub fn write_plan(plan: &PlanDocument) -> Result<String, NotFinite> {
-    text(&plan::wire(plan))
+/// A number that is not finite, other than an unlimited limit or an unproved end; an
+/// action on a module that there is not; a pivot that no turn makes.
+pub fn write_plan(plan: &PlanDocument) -> Result<String, Unwritable> {
+    text(&plan::wire(plan)?)
 }
 
 /// Writes a `check/1` report on an assessed structure, which took `seconds`.
@@ -65,7 +75,7 @@ pub fn write_plan(plan: &PlanDocument) -> Result<String, NotFinite> {
 ///
 /// # Errors
 /// A wrench or a force that is not finite.
-pub fn write_check(structure: &NamedStructure, assessment: &Assessment, seconds: f64) -> Result<String, NotFinite> {
+pub fn write_check(structure: &NamedStructure, assessment: &Assessment, seconds: f64) -> Result<String, Unwritable> {
     text(&check::wire(structure, assessment, seconds))
 }
 
@@ -77,8 +87,8 @@ impl Diagnostics {
     }
 }
 
-fn text(wire: &impl Serialize) -> Result<String, NotFinite> {
-    let value = serde_json::to_value(wire).map_err(|error| NotFinite { problem: error.to_string() })?;
+fn text(wire: &impl Serialize) -> Result<String, Unwritable> {
+    let value = serde_json::to_value(wire).map_err(Unwritable::new)?;
     Ok(layout::text(&value))
 }
 

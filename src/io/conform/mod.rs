@@ -4,6 +4,9 @@
 //! Understands the part of JSON Schema that the wire types use, and no more; a
 //! test holds the two together. Knows no format by itself.
 
+mod keywords;
+mod wording;
+
 use std::collections::HashSet;
 
 use serde_json::{Map, Value as Schema};
@@ -12,6 +15,8 @@ use super::codes;
 use super::findings::{Findings, Place};
 use super::json::{Node, Value, clipped};
 use super::suggest;
+use keywords::{alternatives, description, in_integer_format, is_integer, tag_of, tag_word, types, words};
+use wording::{either, found};
 
 /// What is left to do with a value after its form was checked.
 #[derive(Debug, Default)]
@@ -249,16 +254,6 @@ impl<'a> Checker<'a> {
         self.findings.add(place, codes::WRONG_TYPE, message, hint);
     }
 
-    /// What the key is about, as a hint.
-    fn meaning(&self) -> Option<String> {
-        let Some(about) = self.about else {
-            return Some("`plan schema` shows the form of every format".to_string());
-        };
-        let mut letters = about.trim_end_matches('.').chars();
-        let first = letters.next()?;
-        Some(format!("meaning: {}{}", first.to_lowercase(), letters.as_str()))
-    }
-
     fn accepts(&self, schema: &'a Schema, value: &Value) -> bool {
         let schema = self.resolve(schema);
         if let Some(alternatives) = alternatives(schema) {
@@ -273,166 +268,5 @@ impl<'a> Checker<'a> {
             Value::Object(_) => &["object"],
         };
         types(schema).is_empty() || types(schema).iter().any(|name| names.contains(name))
-    }
-
-    /// What a schema asks for, in words.
-    fn expected(&self, schema: &'a Schema) -> String {
-        let schema = self.resolve(schema);
-        let listed_words = words(schema);
-        if !listed_words.is_empty() {
-            return either(&listed_words);
-        }
-        if let Some(alternatives) = alternatives(schema) {
-            let mut parts: Vec<_> = alternatives.iter().map(|one| self.expected(one)).collect();
-            parts.dedup();
-            return parts.join(" or ");
-        }
-        let parts: Vec<_> = types(schema).iter().map(|name| self.expected_of_type(schema, name)).collect();
-        parts.join(" or ")
-    }
-
-    fn expected_of_type(&self, schema: &'a Schema, name: &str) -> String {
-        let count = |key: &str| schema.get(key).and_then(Schema::as_u64);
-        let plural = || {
-            let item = schema.get("items").map(|items| self.resolve(items));
-            match item.map(types).unwrap_or_default().as_slice() {
-                ["number"] => "numbers",
-                ["number", "null"] => "numbers (or null)",
-                ["integer"] => "whole numbers",
-                ["string"] => "strings",
-                _ => "items",
-            }
-        };
-        match (name, count("minItems"), count("maxItems")) {
-            ("array", Some(least), Some(most)) if least == most => format!("{least} {}", plural()),
-            ("array", Some(_), None) => "a list that is not empty".to_string(),
-            ("array", ..) => "a list".to_string(),
-            ("object", ..) => "an object".to_string(),
-            ("number", ..) => "a number".to_string(),
-            ("integer", ..) => "a whole number".to_string(),
-            ("string", ..) => "a string".to_string(),
-            ("boolean", ..) => "true or false".to_string(),
-            _ => name.to_string(),
-        }
-    }
-}
-
-fn alternatives(schema: &Schema) -> Option<&[Schema]> {
-    schema.get("oneOf").or_else(|| schema.get("anyOf")).and_then(Schema::as_array).map(Vec::as_slice)
-}
-
-/// What a schema says that it is for.
-fn description(schema: &Schema) -> Option<&str> {
-    schema.get("description").and_then(Schema::as_str)
-}
-
-fn types(schema: &Schema) -> Vec<&str> {
-    match schema.get("type") {
-        Some(Schema::String(name)) => vec![name],
-        Some(Schema::Array(names)) => names.iter().filter_map(Schema::as_str).collect(),
-        _ => Vec::new(),
-    }
-}
-
-/// The fixed words that a schema allows; empty when it is not about words.
-fn words(schema: &Schema) -> Vec<&str> {
-    if let Some(word) = schema.get("const").and_then(Schema::as_str) {
-        return vec![word];
-    }
-    if let Some(words) = schema.get("enum").and_then(Schema::as_array) {
-        return words.iter().filter_map(Schema::as_str).collect();
-    }
-    let alternatives = alternatives(schema).unwrap_or_default();
-    let all: Vec<_> = alternatives.iter().map(words).collect();
-    if all.iter().any(Vec::is_empty) { Vec::new() } else { all.concat() }
-}
-
-/// The key that names an object's kind, if it has one.
-fn tag_of(kind: &Schema) -> Option<&str> {
-    let properties = kind.get("properties")?.as_object()?;
-    properties.iter().find(|(_, property)| property.get("const").is_some()).map(|(key, _)| key.as_str())
-}
-
-fn tag_word<'a>(kind: &'a Schema, tag: &str) -> Option<&'a str> {
-    kind["properties"][tag]["const"].as_str()
-}
-
-fn is_integer(schema: &Schema) -> bool {
-    types(schema).contains(&"integer")
-}
-
-/// Whether a number's text is a whole number that the decoder's integer type holds.
-fn in_integer_format(schema: &Schema, text: &str) -> bool {
-    match schema.get("format").and_then(Schema::as_str) {
-        Some("int32") => text.parse::<i32>().is_ok(),
-        Some("uint32") => text.parse::<u32>().is_ok(),
-        Some("uint64") => text.parse::<u64>().is_ok(),
-        _ => text.parse::<i64>().is_ok(),
-    }
-}
-
-fn either(words: &[&str]) -> String {
-    words.iter().map(|word| format!("\"{word}\"")).collect::<Vec<_>>().join(" or ")
-}
-
-fn found(node: &Node, place: &Place<'_>) -> String {
-    match &node.value {
-        Value::Null => "null".to_string(),
-        Value::Bool(value) => value.to_string(),
-        Value::Number(_) => format!("the number {}", clipped(place.text().unwrap_or_default())),
-        Value::String(text) => format!("the string \"{}\"", clipped(text)),
-        Value::Array(items) => format!("a list of {}", items.len()),
-        Value::Object(_) => "an object".to_string(),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::schema;
-    use super::Schema;
-
-    /// Keywords that are checked, or that say nothing about the form.
-    const KNOWN: [&str; 22] = [
-        "$defs",
-        "$ref",
-        "$schema",
-        "additionalProperties",
-        "anyOf",
-        "const",
-        "default",
-        "description",
-        "enum",
-        "exclusiveMinimum",
-        "format",
-        "items",
-        "maxItems",
-        "maximum",
-        "minItems",
-        "minimum",
-        "oneOf",
-        "properties",
-        "required",
-        "title",
-        "type",
-        "examples",
-    ];
-
-    fn check_keywords(schema: &Schema) {
-        for (keyword, value) in schema.as_object().into_iter().flatten() {
-            assert!(KNOWN.contains(&keyword.as_str()), "the checker does not know `{keyword}`");
-            match (keyword.as_str(), value) {
-                ("properties" | "$defs", Schema::Object(members)) => members.values().for_each(check_keywords),
-                ("oneOf" | "anyOf", Schema::Array(all)) => all.iter().for_each(check_keywords),
-                ("items" | "additionalProperties", inner) => check_keywords(inner),
-                _ => {}
-            }
-        }
-    }
-
-    #[test]
-    fn every_keyword_of_the_schemas_is_understood() {
-        for name in schema::schema_names() {
-            check_keywords(schema::value(name).unwrap());
-        }
     }
 }

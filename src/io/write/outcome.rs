@@ -1,0 +1,55 @@
+//! Why a search found no plan, to `plan/1`.
+
+use super::super::document::Problem;
+use super::super::wire::{self, Real};
+use super::sequence::ports;
+use super::{Unwritable, bracket};
+use crate::reconfigure::{Impossible, Limit, Which};
+use crate::robot::Configuration;
+
+/// The reason; `problem` is what it speaks of.
+pub(super) fn impossible(reason: &Impossible, problem: &Problem) -> Result<wire::Impossible, Unwritable> {
+    Ok(match reason {
+        Impossible::ModulesDiffer { module_type, start, goal } => wire::Impossible::ModulesDiffer {
+            module_type: module_type.clone(),
+            start: *start as u64,
+            goal: *goal as u64,
+        },
+        Impossible::FixedModule { module } => wire::Impossible::FixedModule { module: module.clone() },
+        Impossible::Disconnected(end) => wire::Impossible::Disconnected { which: which(*end) },
+        Impossible::Unstable { which: end, margin, required, connection } => wire::Impossible::Unstable {
+            which: which(*end),
+            margin: (margin.upper != f64::NEG_INFINITY).then(|| bracket(*margin)),
+            required_margin: Real(*required),
+            connection: connection.map(|connection| ports(configuration(*end, problem), connection)).transpose()?,
+        },
+        Impossible::Exhausted { required } => {
+            wire::Impossible::Exhausted { required_margin: (*required != f64::NEG_INFINITY).then_some(Real(*required)) }
+        }
+    })
+}
+
+/// What ended the search.
+pub(super) fn limit(limit: Limit) -> wire::StoppedBy {
+    match limit {
+        Limit::Deadline => wire::StoppedBy::Deadline,
+        Limit::Expansions => wire::StoppedBy::Expansions,
+        Limit::Memory => wire::StoppedBy::Memory,
+        Limit::Cancelled => wire::StoppedBy::Cancelled,
+        Limit::Precision => wire::StoppedBy::Precision,
+    }
+}
+
+fn which(which: Which) -> wire::Which {
+    match which {
+        Which::Start => wire::Which::Start,
+        Which::Goal => wire::Which::Goal,
+    }
+}
+
+fn configuration(which: Which, problem: &Problem) -> &Configuration {
+    match which {
+        Which::Start => &problem.start,
+        Which::Goal => &problem.goal.configuration,
+    }
+}
