@@ -56,7 +56,8 @@ fn no_arrow_runs_back() {
         for file in rust_files(&root().join("src").join(layer)) {
             for line in code(&file) {
                 for (other, _) in LAYERS {
-                    let used = line.contains(&format!("crate::{other}::")) || line.contains(&format!("crate::{other};"));
+                    let used =
+                        line.contains(&format!("crate::{other}::")) || line.contains(&format!("crate::{other};"));
                     assert!(
                         !used || other == layer || may_use.contains(&other),
                         "{}: {layer} must not use {other}: {line}",
@@ -88,7 +89,11 @@ fn foreign_libraries_stay_at_home() {
         let layer = place.iter().next().unwrap().to_str().unwrap();
         for line in code(&file) {
             for (library, home) in HOMES {
-                assert!(!names(&line, library) || layer == home, "{}: {library} outside {home}: {line}", file.display());
+                assert!(
+                    !names(&line, library) || layer == home,
+                    "{}: {library} outside {home}: {line}",
+                    file.display()
+                );
             }
         }
     }

@@ -160,15 +160,17 @@ struct Sketch {
     drafts: Vec<Draft>,
     margin: Option<Bracket>,
     moves: u32,
-    bottleneck: Option<(Option<usize>, f64, Option<(Index, Face, Face)>)>,
+    /// Action and phase.
+    bottleneck: Option<(Option<usize>, f64)>,
+    held: Option<(Index, Face, Face)>,
 }
 
 prop_compose! {
     fn sketches()(
         drafts in vec(drafts(), 0..6), margin in option::of(bracket()), moves: u32,
-        bottleneck in option::of((option::of(0..9usize), 0.0..=1.0, option::of((any::<Index>(), face(), face())))),
+        bottleneck in option::of((option::of(0..9usize), 0.0..=1.0)), held in option::of((any::<Index>(), face(), face())),
     ) -> Sketch {
-        Sketch { drafts, margin, moves, bottleneck }
+        Sketch { drafts, margin, moves, bottleneck, held }
     }
 }
 
@@ -205,10 +207,8 @@ fn plan(start: &Configuration, sketch: &Sketch, number: usize) -> (Plan, Vec<Con
         }
         actions.push(PlannedAction { action, margin: draft.margin, phase: draft.phase });
     }
-    let bottleneck = sketch.bottleneck.map(|(action, phase, held)| {
-        let held = held.map(|(module, a, b)| connection([module.index(cells.len()); 2], [a, b]));
-        Bottleneck { action, phase, connection: held }
-    });
+    let held = sketch.held.map(|(module, a, b)| connection([module.index(cells.len()); 2], [a, b]));
+    let bottleneck = sketch.bottleneck.map(|(action, phase)| Bottleneck { action, phase, connection: held });
     (Plan { margin: sketch.margin, moves: sketch.moves, bottleneck, actions }, contradictions)
 }
 
@@ -250,8 +250,7 @@ fn outcomes() -> impl Strategy<Value = Outcome> {
 prop_compose! {
     fn statistics()(counts: [u64; 6], seconds in number()) -> Statistics {
         let [expanded, states, generated, certified, oracle_solves, bytes] = counts;
-        let ruled_out = certified / 3;
-        Statistics { expanded, states, generated, certified, ruled_out, oracle_solves, bytes, seconds: seconds.abs() }
+        Statistics { expanded, states, generated, certified, oracle_solves, bytes, seconds: seconds.abs() }
     }
 }
 
@@ -271,7 +270,7 @@ fn goal(start: &Configuration, labelled: bool, free_frame: bool, turns: &[Orient
 prop_compose! {
     fn documents()(
         start in configurations(), labelled: bool, free_frame: bool, turns in vec(orientation(), 8),
-        outcome in outcomes(), by_moves: bool, required in option::of(number()), found: bool,
+        outcome in outcomes(), cut_by in option::of(limit()), by_moves: bool, required in option::of(number()), found: bool,
         sketches in vec(sketches(), 1..4), statistics in statistics(), optimal: bool,
         bounds in (option::of(number()), option::of(0..u32::MAX)),
     ) -> PlanDocument {
@@ -299,6 +298,7 @@ prop_compose! {
                 required,
                 plan: plans.next(),
                 alternatives: plans.collect(),
+                alternatives_cut_by: cut_by,
                 proof: Proof {
                     optimal,
                     margin_at_most: bounds.0.unwrap_or(unproved.0),

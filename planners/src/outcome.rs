@@ -94,6 +94,14 @@ impl<T> Outcome<T> {
         }
     }
 
+    /// What ended the search before it was done, if something did.
+    pub fn limit(&self) -> Option<Limit> {
+        match self {
+            Outcome::OutOfBudget { limit, .. } => Some(*limit),
+            Outcome::Solved { .. } | Outcome::Impossible => None,
+        }
+    }
+
     /// What was proved, unless that is impossibility.
     pub fn proof(&self) -> Option<&Proof> {
         match self {

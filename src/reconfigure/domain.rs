@@ -3,14 +3,16 @@
 
 use planners::Width;
 
-use crate::geometry::{Solid, Surroundings, first_collision};
-use crate::robot::Placement;
+use crate::geometry::{BroadPhase, Solid, Surroundings, TOUCH, first_collision};
+use crate::robot::{Cell, Placement, Shape};
+use crate::spatial::{Pose, Rotation, Vec3};
 use crate::statics::Bracket;
 
 use super::course::motion;
 use super::layout::{Bond, Layout};
-use super::moves::{Move, fitting};
-use super::oracle::{Oracle, Rest, Worst};
+use super::local::{Memo, Neighbourhood, plane};
+use super::moves::{Motion, Move, fitting};
+use super::oracle::{Oracle, Worst};
 use super::problem::Problem;
 
 /// A problem with everything that answers questions about its states.
@@ -22,7 +24,14 @@ pub struct Domain<'a> {
     /// Whether states must be stable at all.
     pub stability: bool,
     surroundings: Surroundings,
+    obstacles: BroadPhase,
     pitch: f64,
+    /// Whether a module of this type does not hit ground or obstacles.
+    clear: Memo<(Move, usize), bool>,
+    /// Margins at rest.
+    at_rest: Memo<(Layout, Vec<Bond>), Worst>,
+    /// Bounds on the margins of pivots.
+    at_most: Memo<Neighbourhood, f64>,
 }
 
 impl<'a> Domain<'a> {
@@ -33,7 +42,17 @@ impl<'a> Domain<'a> {
             solids: start.environment.obstacles.iter().map(Solid::from).collect(),
             ground: start.environment.ground.as_ref().map(|ground| ground.height),
         };
-        Self { problem, oracle: Oracle::new(start), stability, surroundings, pitch: start.pitch() }
+        Self {
+            problem,
+            oracle: Oracle::new(start),
+            stability,
+            obstacles: BroadPhase::new(surroundings.solids.clone()),
+            surroundings,
+            pitch: start.pitch(),
+            clear: Memo::new(),
+            at_rest: Memo::new(),
+            at_most: Memo::new(),
+        }
     }
 
     /// The moves that fit among the modules and hit neither ground nor
@@ -47,10 +66,12 @@ impl<'a> Domain<'a> {
     fn is_clear(&self, layout: &Layout, step: Move) -> bool {
         let class = layout.placed()[layout.at(step.from).expect("a fitting move has a module")].class;
         let module_type = self.problem.class(class).module_type;
-        let shape = self.problem.start().catalogue.module_types[module_type].body.shape.clone();
-        // A cube sweeps the same room in every orientation.
-        let solid = Solid::new(shape, Placement::new(step.from).pose(self.pitch));
-        first_collision(&solid, &motion(step, self.pitch), &self.surroundings).is_none()
+        self.clear.get((step, module_type), |_| {
+            let shape = self.problem.start().catalogue.module_types[module_type].body.shape.clone();
+            // A cube sweeps the same room in every orientation.
+            let solid = Solid::new(shape, Placement::new(step.from).pose(self.pitch));
+            first_collision(&solid, &motion(step, self.pitch), &self.surroundings).is_none()
+        })
     }
 
     /// The layout after a move.
@@ -81,14 +102,58 @@ impl<'a> Domain<'a> {
 
     /// Margin at rest.
     pub fn of_state(&self, layout: &Layout, bonds: &[Bond]) -> Worst {
-        self.oracle.of_state(&self.problem.placements(layout), bonds)
+        let key = (layout.clone(), bonds.to_vec());
+        self.at_rest.get(key, |_| self.oracle.of_state(&self.problem.placements(layout), bonds))
     }
 
-    /// Margin of a move out of a state with these connections.
+    /// Upper bound on the margin of a move, whatever is engaged, from the
+    /// moving module and its neighbours alone: infinite for slides, which many
+    /// faces hold, and for pivots along ground or obstacles.
+    pub fn at_most(&self, layout: &Layout, step: Move) -> f64 {
+        if !self.stability || self.is_along_environment(step) {
+            return f64::INFINITY;
+        }
+        let Some(pivot) = Neighbourhood::new(self.problem, layout, step) else { return f64::INFINITY };
+        self.at_most.get(pivot, |_| self.oracle.at_most(self.problem.placements(layout), step))
+    }
+
+    /// Whether the module of a pivot may touch ground or an obstacle strictly between its
+    /// ends: one that reaches into the smallest box around all it sweeps, or
+    /// touches that box across the axis. Its other sides the module reaches at the ends only.
+    fn is_along_environment(&self, step: Move) -> bool {
+        let Some((cells, axis)) = plane(step) else { return false };
+        let corner = |extreme: fn(i32, i32) -> i32| -> Cell {
+            std::array::from_fn(|i| cells.iter().map(|cell| cell[i]).reduce(extreme).expect("the module's own cell"))
+        };
+        let [low, high] = [corner(i32::min), corner(i32::max)].map(|cell| Placement::new(cell).centre(self.pitch));
+        let tolerance = TOUCH * self.pitch;
+        let mut half_extents = (high - low) / 2.0 + Vec3::repeat(self.pitch / 2.0 - tolerance);
+        half_extents[axis.axis()] += 2.0 * tolerance;
+        let centre = (low + high) / 2.0;
+        let room = Solid::new(Shape::Cuboid { half_extents }, Pose::from_parts(centre.into(), Rotation::identity()));
+        self.surroundings.ground.is_some_and(|height| centre.z - half_extents.z <= height)
+            || !self.obstacles.near(&room, 0.0).is_empty()
+    }
+
+    /// Margin of a move out of a state with these connections: of all its
+    /// transient states and of the state at rest that it ends in.
+    ///
+    /// Stops as soon as one state's margin is proved to be below `floor`; then
+    /// the lower end is minus infinity.
     pub fn of_move(&self, layout: &Layout, bonds: &[Bond], step: Move, floor: f64) -> Worst {
-        let after = self.after(layout, step);
-        let rest = Rest { placements: self.problem.placements(&after), bonds: bonds_after(layout, bonds, step) };
-        self.oracle.of_move(self.problem.placements(layout), bonds, step, &rest, floor)
+        let course = || self.oracle.of_move(self.problem.placements(layout), bonds, step, floor);
+        match step.motion {
+            // The state at rest after a slide is the one at its last phase.
+            Motion::Slide { .. } => course(),
+            Motion::Pivot { .. } => {
+                let settled = self.of_state(&self.after(layout, step), &bonds_after(layout, bonds, step));
+                if settled.is_out(floor) {
+                    return settled.cut_short();
+                }
+                let worst = course();
+                if worst.is_out(floor) { worst } else { worst.or_worse(settled) }
+            }
+        }
     }
 }
 

@@ -14,7 +14,7 @@ use crate::statics::{Bracket, InvalidStructure, Question, assess};
 use super::assembly::{Assembler, Assembly, Engagement, Transient};
 use super::course::{Course, engagement};
 use super::layout::Bond;
-use super::moves::{Motion, Move};
+use super::moves::Move;
 use super::sampling;
 
 /// When a margin is attained.
@@ -51,7 +51,6 @@ pub struct Oracle<'a> {
     assembler: Assembler<'a>,
     pitch: f64,
     solves: AtomicU64,
-    relaxed: AtomicU64,
     fault: Mutex<Option<Vec<InvalidStructure>>>,
 }
 
@@ -62,7 +61,6 @@ impl<'a> Oracle<'a> {
             assembler: Assembler::new(configuration),
             pitch: configuration.pitch(),
             solves: AtomicU64::new(0),
-            relaxed: AtomicU64::new(0),
             fault: Mutex::new(None),
         }
     }
@@ -70,11 +68,6 @@ impl<'a> Oracle<'a> {
     /// Structures assessed so far.
     pub fn solves(&self) -> u64 {
         self.solves.load(Ordering::Relaxed)
-    }
-
-    /// Moves that the moving module alone ruled out, without a solve.
-    pub fn ruled_out(&self) -> u64 {
-        self.relaxed.load(Ordering::Relaxed)
     }
 
     /// What the oracle found wrong with a structure, if it ever did. The margin
@@ -91,48 +84,37 @@ impl<'a> Oracle<'a> {
         self.ask(&Transient { placements, moving: None, engaged: &engaged }, Instant::Rest)
     }
 
-    /// Margin of a move: of all its transient states and of the state that it
-    /// ends in. `bonds` are the connections before it, `after` those after it.
+    /// Margin of the transient states of a move. `bonds` are the connections before it.
     ///
     /// Stops as soon as one state's margin is proved to be below `floor`; then the lower end is
     /// minus infinity. The result does not depend on the number of threads.
-    pub fn of_move(&self, before: Vec<Placement>, bonds: &[Bond], step: Move, rest: &Rest, floor: f64) -> Worst {
+    pub fn of_move(&self, before: Vec<Placement>, bonds: &[Bond], step: Move, floor: f64) -> Worst {
         let course = Course::new(before, bonds, step, self.pitch).expect("a legal move has a module and a support");
-        if let Some(out) = self.rule_out(&course, step, floor) {
-            return out.cut_short();
-        }
         match self.of_course(&course, step, floor) {
             Err(out) => out.cut_short(),
-            // The state at rest after a slide is the one at its last phase.
-            Ok(worst) if matches!(step.motion, Motion::Slide { .. }) => worst,
-            Ok(worst) => {
-                let settled = self.of_state(&rest.placements, &rest.bonds);
-                if is_out(&settled, floor) { settled.cut_short() } else { worst.or_worse(settled) }
-            }
+            Ok(worst) => worst,
         }
     }
 
-    /// A state of the move whose margin is below `floor` even if all modules but
-    /// the moving one are held immovably, if there is one.
+    /// Upper bound on the margin of a move: with all modules but the moving one held
+    /// immovably, at every 45 degrees of a pivot or half-way through a slide, ends left out.
     ///
     /// Holding a body drops its balance from the program, so the utilisation of what is left is
     /// a lower bound: a problem of one body, in closed form where only a hinge holds it.
-    fn rule_out(&self, course: &Course, step: Move, floor: f64) -> Option<Worst> {
-        if floor == f64::NEG_INFINITY {
-            return None;
-        }
-        let out = initial_phases(step).find_map(|phase| {
+    pub fn at_most(&self, before: Vec<Placement>, step: Move) -> f64 {
+        // What holds the others to each other plays no part.
+        let course = Course::new(before, &[], step, self.pitch).expect("a legal move has a module and a support");
+        let margins = sampling::coarse(step).map(|phase| {
             let state = course.at(phase);
             let mut assembly = self.assembler.assemble(&state);
             let moving = state.moving.map(|moving| moving.module);
             for (module, body) in assembly.structure.bodies.iter_mut().enumerate() {
                 body.fixed |= Some(module) != moving;
             }
-            let worst = self.read(&assembly, &state, Instant::Phase(phase));
-            (worst.margin.upper < floor).then_some(worst)
+            self.solves.fetch_add(1, Ordering::Relaxed);
+            self.read(&assembly, &state, Instant::Phase(phase)).margin.upper
         });
-        self.relaxed.fetch_add(u64::from(out.is_some()), Ordering::Relaxed);
-        out
+        margins.fold(f64::INFINITY, f64::min)
     }
 
     /// The worst sample, refined; `Err` with the first that is out.
@@ -168,7 +150,7 @@ impl<'a> Oracle<'a> {
             };
             for (&phase, worst) in together.iter().zip(worsts) {
                 self.solves.fetch_add(1, Ordering::Relaxed);
-                if is_out(&worst, floor) {
+                if worst.is_out(floor) {
                     return Err(worst);
                 }
                 samples.push((phase, worst));
@@ -205,15 +187,6 @@ fn initial_phases(step: Move) -> impl Iterator<Item = f64> {
     first.into_iter().chain(others).map(move |i| f64::from(i) / f64::from(steps))
 }
 
-/// The state that a move ends in.
-#[derive(Clone, Debug)]
-pub struct Rest {
-    /// Placements after the move.
-    pub placements: Vec<Placement>,
-    /// Connections after the move.
-    pub bonds: Vec<Bond>,
-}
-
 impl Worst {
     /// The worse of two; of equals the first.
     #[must_use]
@@ -223,14 +196,15 @@ impl Worst {
     }
 
     /// What is known when other states were not asked about.
-    fn cut_short(self) -> Self {
+    #[must_use]
+    pub fn cut_short(self) -> Self {
         Self { margin: Bracket::new(f64::NEG_INFINITY, self.margin.upper), ..self }
     }
-}
 
-/// Whether no more need be known.
-fn is_out(worst: &Worst, floor: f64) -> bool {
-    worst.margin.upper < floor || worst.margin.upper == f64::NEG_INFINITY
+    /// Whether no more need be known of what this is a part of.
+    pub fn is_out(&self, floor: f64) -> bool {
+        self.margin.upper < floor || self.margin.upper == f64::NEG_INFINITY
+    }
 }
 
 fn seam(engagement: &Engagement, placements: &[Placement]) -> Seam {

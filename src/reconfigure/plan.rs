@@ -94,8 +94,6 @@ pub struct Statistics {
     pub generated: u64,
     /// Transitions whose margin was asked for; all others were decided by bounds.
     pub certified: u64,
-    /// Of those, the ones that the moving module alone ruled out.
-    pub ruled_out: u64,
     /// Structures that the oracle assessed.
     pub oracle_solves: u64,
     /// Peak memory of the search, in approximate bytes.
@@ -107,7 +105,7 @@ pub struct Statistics {
 impl Statistics {
     /// Transitions for which the whole robot was never assessed.
     pub fn decided_by_bounds(&self) -> u64 {
-        self.generated.saturating_sub(self.certified).saturating_add(self.ruled_out)
+        self.generated.saturating_sub(self.certified)
     }
 }
 
@@ -125,6 +123,9 @@ pub struct Report {
     pub plan: Option<Plan>,
     /// Further plans, best first, that differ in more than the order of independent moves.
     pub alternatives: Vec<Plan>,
+    /// What ended the search for further plans before there were as many as
+    /// asked for; `None` where these are all that exist, or enough.
+    pub alternatives_cut_by: Option<Limit>,
     /// What was proved.
     pub proof: Proof,
     /// What it took.

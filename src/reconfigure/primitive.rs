@@ -4,8 +4,7 @@
 //! It takes nothing from monotony, and so is what the saturated space is
 //! tested against. Its states grow with 2 to the power of the touching faces.
 
-use std::collections::HashMap;
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
 
 use planners::{Space, Transition, Width};
 
@@ -25,25 +24,13 @@ pub struct Primitive<'a> {
     domain: &'a Domain<'a>,
     start: Width,
     at_most: f64,
-    /// Margins of states at rest, which many transitions lead to.
-    known: Mutex<HashMap<State, Width>>,
 }
 
 impl<'a> Primitive<'a> {
     /// The space of a domain whose start has this margin and whose paths are no
     /// wider than `at_most`.
     pub fn new(domain: &'a Domain<'a>, start: Width, at_most: f64) -> Self {
-        Self { domain, start, at_most, known: Mutex::new(HashMap::new()) }
-    }
-
-    fn at_rest(&self, state: &State) -> Width {
-        let known = || self.known.lock().expect("no thread panics while it holds the margins");
-        if let Some(width) = known().get(state) {
-            return *width;
-        }
-        let found = width(self.domain.of_state(&state.layout, &state.bonds).margin);
-        known().insert(state.clone(), found);
-        found
+        Self { domain, start, at_most }
     }
 
     /// The transition of a step, if the robot stays connected.
@@ -65,7 +52,11 @@ impl<'a> Primitive<'a> {
             Step::Move(step) => self.domain.stays_connected(&from.layout, &from.bonds, step),
         };
         let to = State { layout, bonds: bonds.into() };
-        connected.then_some(Transition { action: step, to, cost, width_at_most: self.at_most })
+        let width_at_most = match step {
+            Step::Move(step) if connected => self.at_most.min(self.domain.at_most(&from.layout, step)),
+            _ => self.at_most,
+        };
+        connected.then_some(Transition { action: step, to, cost, width_at_most })
     }
 }
 
@@ -97,7 +88,7 @@ impl Space for Primitive<'_> {
             return Width::UNLIMITED;
         }
         let found = match *action {
-            Step::Attach(_) | Step::Detach(_) => self.at_rest(to),
+            Step::Attach(_) | Step::Detach(_) => width(self.domain.of_state(&to.layout, &to.bonds).margin),
             Step::Move(step) => width(self.domain.of_move(&from.layout, &from.bonds, step, floor).margin),
         };
         found.in_series(self.start)

@@ -23,6 +23,16 @@ pub fn steps(step: Move) -> u32 {
     }
 }
 
+/// A few phases strictly between the ends, all of them sampled before refinement:
+/// the middle, and every 45 degrees of a pivot.
+pub fn coarse(step: Move) -> impl Iterator<Item = f64> {
+    let parts = match step.motion {
+        Motion::Slide { .. } | Motion::Pivot { turn: Turn::Quarter, .. } => 2,
+        Motion::Pivot { turn: Turn::Half, .. } => 4,
+    };
+    (1..parts).map(move |part| f64::from(part) / f64::from(parts))
+}
+
 /// The distance in phase below which samples are not refined further.
 pub fn resolution(step: Move) -> f64 {
     match step.motion {

@@ -60,13 +60,29 @@ impl<'a> Saturated<'a> {
     /// Margin of a move with the detachments before it.
     fn of_move(&self, layout: &Layout, step: Move, floor: f64) -> Worst {
         let bonds = kept(layout, step);
-        let worst = self.domain.of_move(layout, &bonds, step, floor);
-        match step.motion {
+        let released = match step.motion {
             // When it begins to slide, the module is held as after the detachments.
-            Motion::Slide { .. } => worst,
-            Motion::Pivot { .. } if worst.margin.upper < floor => worst,
-            Motion::Pivot { .. } => self.domain.of_state(layout, &bonds).or_worse(worst),
+            Motion::Slide { .. } => None,
+            Motion::Pivot { .. } => Some(self.domain.of_state(layout, &bonds)),
+        };
+        if let Some(released) = released.filter(|released| released.is_out(floor)) {
+            return released.cut_short();
         }
+        let worst = self.domain.of_move(layout, &bonds, step, floor);
+        match released {
+            Some(released) if !worst.is_out(floor) => released.or_worse(worst),
+            _ => worst,
+        }
+    }
+
+    /// A state's margin with everything engaged, if that alone rules out every
+    /// move into it: with less engaged, as a move ends, it is no larger.
+    fn settled_out(&self, to: &Layout, floor: f64) -> Option<Worst> {
+        if floor == f64::NEG_INFINITY {
+            return None;
+        }
+        let settled = self.domain.of_state(to, &to.touching());
+        settled.is_out(floor).then(|| settled.cut_short())
     }
 }
 
@@ -102,17 +118,20 @@ impl Space for Saturated<'_> {
             action: Action::Move(step),
             to: State { layout: self.domain.after(layout, step), arrived: false },
             cost: 1,
-            width_at_most,
+            width_at_most: width_at_most.min(self.domain.at_most(layout, step)),
         });
         finish.into_iter().chain(moves).collect()
     }
 
-    fn certify(&self, from: &State, action: &Action, _to: &State, floor: f64) -> Width {
+    fn certify(&self, from: &State, action: &Action, to: &State, floor: f64) -> Width {
         if !self.domain.stability {
             return Width::UNLIMITED;
         }
         let worst = match *action {
-            Action::Move(step) => self.of_move(&from.layout, step, floor),
+            Action::Move(step) => match self.settled_out(&to.layout, floor) {
+                Some(out) => out,
+                None => self.of_move(&from.layout, step, floor),
+            },
             Action::Finish(arrival) => self.domain.of_state(&from.layout, &self.domain.problem.goal().bonds(arrival)),
         };
         width(worst.margin).in_series(self.start)

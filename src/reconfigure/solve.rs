@@ -123,7 +123,6 @@ pub fn solve(
         return Err(Refusal::Structure(fault));
     }
     report.statistics.oracle_solves = domain.oracle.solves();
-    report.statistics.ruled_out = domain.oracle.ruled_out();
     report.statistics.seconds = began.elapsed().as_secs_f64();
     Ok(report)
 }
@@ -208,6 +207,7 @@ impl Task<'_> {
             steps(&path.steps.iter().map(|step| step.action.clone()).collect::<Vec<_>>())
         };
         let mut found: Vec<Vec<Step>> = outcome.best().map(&actions).into_iter().collect();
+        let mut cut_by = outcome.limit();
         if let planners::Outcome::Solved { found: best, .. } = &outcome
             && self.options.plans > 1
         {
@@ -219,7 +219,9 @@ impl Task<'_> {
             let further = search.k_best(self.options.plans, as_good, key);
             further_plans(&mut found, further.best().into_iter().flatten().map(&actions), trace);
             found.truncate(self.options.plans);
+            cut_by = further.limit();
         }
+        let wants_more = self.options.plans > 1 && found.len() < self.options.plans;
         let statistics = search.statistics();
         drop(search);
         let mut plans = found.iter().map(|steps| compose(self.domain, steps));
@@ -231,6 +233,7 @@ impl Task<'_> {
             required: self.required,
             plan,
             alternatives: plans.collect(),
+            alternatives_cut_by: cut_by.filter(|_| wants_more),
             proof,
             statistics: Statistics {
                 expanded: statistics.expanded,
@@ -337,6 +340,7 @@ fn impossible(options: &Options, required: Option<f64>, reason: Impossible) -> R
         required,
         plan: None,
         alternatives: Vec::new(),
+        alternatives_cut_by: None,
         proof: NOTHING_TO_FIND,
         statistics: Statistics::default(),
     }

@@ -7,7 +7,7 @@
 //!    lumps what hangs there;
 //! 2. `closed_form` answers for bridges, with the connectors' `demand`;
 //! 3. `program` states every other block as a second-order cone program and
-//!    `conic` hands it to the solver;
+//!    `interior_point` solves it, with `conic` behind it, a general solver;
 //! 4. `bracket` proves bounds from the fields that come back, after `balance`
 //!    has made the wrenches balance; `collapse` proves that no strength helps.
 //!
@@ -27,7 +27,9 @@ mod connector;
 mod demand;
 mod frame;
 mod hull;
+mod interior_point;
 mod loads;
+mod normal;
 mod part;
 mod patch;
 mod program;
@@ -35,6 +37,7 @@ mod respect;
 mod scales;
 mod second_order;
 mod solve_block;
+mod stiffness;
 mod structure;
 mod tolerances;
 mod validate;

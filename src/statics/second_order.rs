@@ -33,6 +33,18 @@ pub(super) fn step_length<const N: usize>(z: &[f64; N], d: &[f64; N], shorten: f
     (shorten * reach.min(head)).min(1.0)
 }
 
+/// Whether `z + a d` is in the cone's interior, up to rounding.
+fn allows<const N: usize>(z: &[f64; N], d: &[f64; N], a: f64) -> bool {
+    let there: [f64; N] = std::array::from_fn(|k| z[k] + a * d[k]);
+    there[0] > 0.0 && there[0] * there[0] > dot(&there[1..], &there[1..])
+}
+
+/// The smaller of `step` and the step that one cone allows, times `shorten`.
+pub(super) fn shortened_step<const N: usize>(z: &[f64; N], d: &[f64; N], shorten: f64, step: f64) -> f64 {
+    // Most cones are not in the way, which is cheaper to see than where they are left.
+    if allows(z, d, step / shorten) { step } else { step.min(step_length(z, d, shorten)) }
+}
+
 /// The Nesterov-Todd scaling `W` of a pair in the cone's interior: the symmetric
 /// matrix with `W x = W^-1 s`.
 pub(super) struct Scaling<const N: usize> {
@@ -82,11 +94,24 @@ pub(super) fn divide<const N: usize>(u: &[f64; N], v: &[f64; N]) -> [f64; N] {
     std::array::from_fn(|i| if i == 0 { head } else { (v[i] - head * u[i]) / u[0] })
 }
 
+/// Mehrotra's target `l \ (mu e - l o l - dx o ds)` at the scaled point `l` and
+/// the scaled predictor steps.
+pub(super) fn aim<const N: usize>(point: &[f64; N], dx: &[f64; N], ds: &[f64; N], mu: f64) -> [f64; N] {
+    let (square, second) = (product(point, point), product(dx, ds));
+    let wanted = std::array::from_fn(|k| if k == 0 { mu } else { 0.0 } - square[k] - second[k]);
+    divide(point, &wanted)
+}
+
 pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
 
+/// Euclidean length, without overflow or underflow.
 pub(super) fn norm(a: &[f64]) -> f64 {
+    let square = dot(a, a);
+    if square > 1e-200 && square < 1e200 {
+        return square.sqrt();
+    }
     let size = a.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     if size == 0.0 || !size.is_finite() {
         size
@@ -119,6 +144,23 @@ mod tests {
         for i in 0..3 {
             assert!((again[i] - v[i]).abs() < 1e-13);
         }
+    }
+
+    #[test]
+    fn a_step_is_allowed_up_to_its_length() {
+        let (z, d) = ([2.0, 0.5, -1.0], [-0.4, 3.0, 0.7]);
+        let reach = step_length(&z, &d, 1.0);
+        assert!(reach < 1.0);
+        assert!(allows(&z, &d, 0.999 * reach) && !allows(&z, &d, 1.001 * reach));
+    }
+
+    #[test]
+    fn length_neither_overflows_nor_vanishes() {
+        for scale in [1e-300, 1e-150, 1.0, 1e150, 1e300] {
+            assert!((norm(&[3.0 * scale, -4.0 * scale]) / scale - 5.0).abs() < 1e-14);
+        }
+        assert_eq!(norm(&[0.0, 0.0]), 0.0);
+        assert!(norm(&[f64::NAN, 1.0]).is_nan() && norm(&[f64::INFINITY, 1.0]).is_infinite());
     }
 
     #[test]

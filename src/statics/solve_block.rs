@@ -1,5 +1,5 @@
-//! A block that needs optimisation: propose with the conic solver, prove with
-//! the bracket, and ask again where the proof is not tight enough.
+//! A block that needs optimisation: propose with the interior-point method, prove
+//! with the bracket, and ask the general solver where the proof is not tight enough.
 
 use crate::spatial::{Twist, Wrench};
 
@@ -9,14 +9,20 @@ use super::blocks::Block;
 use super::bracket::Problem;
 use super::clusters::Clusters;
 use super::collapse;
-use super::conic::{Attempt, Iterate, solve};
+use super::conic::{self, Attempt, Iterate};
+use super::interior_point;
 use super::loads::BodyLoad;
 use super::part::Part;
 use super::program::{Program, Purpose, local_body};
 use super::structure::Structure;
 use super::tolerances::VALUE_WIDTH;
 
-/// Ways of asking the solver, tried in turn until the bracket is tight enough.
+/// Accuracy of t, relative to the larger of t and 1, that the block's own
+/// interior-point method is asked for: well inside the bracket's width.
+const TOLERANCE: f64 = 2e-8;
+
+/// Ways of asking the general solver where that was not enough, tried in turn
+/// until the bracket is tight enough.
 /// Each bound keeps the best that any of them proved.
 /// A positive inset suits structures that cannot clamp themselves; a negative one
 /// those that can, since it keeps their self-stress bounded.
@@ -61,18 +67,22 @@ pub(super) fn assess_block(structure: &Structure, block: &Block, loads: &[BodyLo
     let mut best = Best::new(block);
     // Where supports face each other, begin with the attempt that bounds forces.
     let first = usize::from(faces_itself(&problem));
-    for (count, attempt) in ATTEMPTS[first..].iter().chain(&ATTEMPTS[..first]).enumerate() {
-        if let Some(iterate) = solve(&program, attempt) {
-            best.improve(&problem, &iterate, question);
-        }
+    let inset = ATTEMPTS[first].inset;
+    if let Some(iterate) = interior_point::solve(&program, inset, TOLERANCE) {
+        best.improve(&problem, &iterate, question);
+    }
+    if best.upper.is_infinite()
+        && !best.answers(question)
+        && let Some(mechanism) = collapse::find(structure, block, loads)
+    {
+        return Part::Collapses { mechanism };
+    }
+    for attempt in ATTEMPTS[first..].iter().chain(&ATTEMPTS[..first]) {
         if best.answers(question) {
             break;
         }
-        if count == 0
-            && best.upper.is_infinite()
-            && let Some(mechanism) = collapse::find(structure, block, loads)
-        {
-            return Part::Collapses { mechanism };
+        if let Some(iterate) = conic::solve(&program, attempt) {
+            best.improve(&problem, &iterate, question);
         }
     }
     let tight = best.answers(question);
@@ -84,7 +94,7 @@ pub(super) fn assess_block(structure: &Structure, block: &Block, loads: &[BodyLo
         shares: best.shares,
         undecided_because: (!tight).then(|| {
             format!(
-                "the conic solver left the bracket [{:.9}, {:.9}] on a block of {} bodies",
+                "the solvers left the bracket [{:.9}, {:.9}] on a block of {} bodies",
                 best.lower,
                 best.upper,
                 block.bodies.len()
@@ -225,7 +235,7 @@ impl Best {
                 program: &program,
             };
             for attempt in &FUSED_ATTEMPTS {
-                let Some(iterate) = solve(&program, attempt) else { continue };
+                let Some(iterate) = conic::solve(&program, attempt) else { continue };
                 let twists = program.twists(&iterate.v);
                 if let Some((lower, inner_shares)) = inner.lower_bound(&twists)
                     && lower > self.lower

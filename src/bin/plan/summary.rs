@@ -22,6 +22,9 @@ pub fn summary(problem: &Problem, report: &Report, replay: Option<&Replay>) -> S
         let _ = writeln!(text, "\nalternative {}: {}", index + 1, worth(plan));
         actions(&mut text, start, plan);
     }
+    if let Some(limit) = report.alternatives_cut_by.filter(|_| report.plan.is_some()) {
+        let _ = writeln!(text, "\nthere may be further plans as good: the search for them was {}", cut(limit));
+    }
     text.push('\n');
     proved(&mut text, report);
     if let Some(replay) = replay {
@@ -55,6 +58,13 @@ fn stopped(limit: Limit) -> &'static str {
         Limit::Memory => "stopped at the memory limit",
         Limit::Cancelled => "interrupted",
         Limit::Precision => "some margins are too close to the required one to be decided",
+    }
+}
+
+fn cut(limit: Limit) -> &'static str {
+    match limit {
+        Limit::Precision => "left undecided by margins too close to the required one",
+        other => stopped(other),
     }
 }
 

@@ -106,7 +106,7 @@ fn which(wire: wire::Which) -> Which {
     }
 }
 
-fn limit(wire: wire::StoppedBy) -> Limit {
+pub(super) fn limit(wire: wire::StoppedBy) -> Limit {
     match wire {
         wire::StoppedBy::Deadline => Limit::Deadline,
         wire::StoppedBy::Expansions => Limit::Expansions,

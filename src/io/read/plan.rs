@@ -8,7 +8,7 @@ use super::super::wire;
 use super::decode::decode;
 use super::goal::read_problem;
 use super::names::Names;
-use super::outcome::outcome;
+use super::outcome::{limit, outcome};
 use super::sequence::{Parts, Reader};
 use crate::reconfigure::{Objective, Outcome, Proof, Report, Statistics};
 
@@ -54,6 +54,7 @@ pub(super) fn read(root: &Place<'_>, findings: &mut Findings) -> Option<PlanDocu
         required: wire.required_margin.map(|margin| margin.0),
         plan,
         alternatives: alternatives.into_iter().collect::<Option<_>>()?,
+        alternatives_cut_by: wire.alternatives_cut_by.map(limit),
         statistics,
     };
     Some(PlanDocument { problem, report, contradictions })
@@ -73,14 +74,12 @@ fn proof(wire: &wire::Proof, outcome: &Outcome) -> Proof {
 }
 
 fn statistics(wire: &wire::Statistics, place: &Place<'_>, findings: &mut Findings) -> Statistics {
-    let (certified, ruled_out) = (wire.certified.unwrap_or_default(), wire.ruled_out.unwrap_or_default());
-    let others = wire.decided_by_bounds.saturating_sub(ruled_out);
+    let certified = wire.certified.unwrap_or_default();
     let statistics = Statistics {
         expanded: wire.expanded,
         states: wire.states.unwrap_or_default(),
-        generated: wire.generated.unwrap_or_else(|| certified.saturating_add(others)),
+        generated: wire.generated.unwrap_or_else(|| certified.saturating_add(wire.decided_by_bounds)),
         certified,
-        ruled_out,
         oracle_solves: wire.oracle_solves,
         bytes: wire.memory_bytes.unwrap_or_default(),
         seconds: wire.seconds.0,
@@ -88,7 +87,7 @@ fn statistics(wire: &wire::Statistics, place: &Place<'_>, findings: &mut Finding
     let decided = statistics.decided_by_bounds();
     if wire.decided_by_bounds != decided {
         let message = format!("says {}, but the counts make it {decided}", wire.decided_by_bounds);
-        let hint = "it is `generated` less `certified`, plus `ruled_out`".to_string();
+        let hint = "it is `generated` less `certified`".to_string();
         findings.add(&place.key("decided_by_bounds"), codes::PLAN, message, hint);
     }
     statistics

@@ -33,6 +33,9 @@ pub(crate) struct Plan {
     /// What ended the search without an answer; null unless out of budget.
     #[serde(default)]
     pub(crate) stopped_by: Option<StoppedBy>,
+    /// What ended the search for further plans before there were as many as asked for; else null.
+    #[serde(default)]
+    pub(crate) alternatives_cut_by: Option<StoppedBy>,
     /// What it optimised.
     pub(crate) objective: Objective,
     /// Margin that every transient state must have; null for plans made by geometry alone.
@@ -143,12 +146,9 @@ pub(crate) struct Statistics {
     /// Transitions whose margin was asked for; null when not counted.
     #[serde(default)]
     pub(crate) certified: Option<u64>,
-    /// Of those, the ones that the moving module alone ruled out; null when not counted.
-    #[serde(default)]
-    pub(crate) ruled_out: Option<u64>,
     /// Exact oracle calls.
     pub(crate) oracle_solves: u64,
-    /// Transitions for which the whole robot was never assessed.
+    /// Transitions that no margin was asked for.
     pub(crate) decided_by_bounds: u64,
     /// Peak memory of the search, approximately; null when not counted.
     #[serde(default)]

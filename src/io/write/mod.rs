@@ -88,7 +88,7 @@ impl Diagnostics {
 }
 
 fn text(wire: &impl Serialize) -> Result<String, Unwritable> {
-    let value = serde_json::to_value(wire).map_err(|error| Unwritable::new(error))?;
+    let value = serde_json::to_value(wire).map_err(Unwritable::new)?;
     Ok(layout::text(&value))
 }
 

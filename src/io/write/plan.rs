@@ -37,6 +37,7 @@ pub(super) fn wire(document: &PlanDocument) -> Result<wire::Plan, Unwritable> {
         impossible_because: impossible.map(ToString::to_string),
         impossible: impossible.map(|reason| outcome::impossible(reason, problem)).transpose()?,
         stopped_by,
+        alternatives_cut_by: report.alternatives_cut_by.map(outcome::limit),
         objective: match report.objective {
             Objective::Margin => wire::Objective::Margin,
             Objective::Moves => wire::Objective::Moves,
@@ -69,7 +70,6 @@ fn statistics(statistics: &Statistics) -> wire::Statistics {
         states: Some(statistics.states),
         generated: Some(statistics.generated),
         certified: Some(statistics.certified),
-        ruled_out: Some(statistics.ruled_out),
         oracle_solves: statistics.oracle_solves,
         decided_by_bounds: statistics.decided_by_bounds(),
         memory_bytes: Some(statistics.bytes),

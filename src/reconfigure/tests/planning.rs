@@ -7,6 +7,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use proptest::prelude::*;
 
 use crate::reconfigure::domain::Domain;
+use crate::reconfigure::layout::displaced;
+use crate::reconfigure::local::Neighbourhood;
 use crate::reconfigure::moves::{Motion, Move};
 use crate::reconfigure::plan::{Limit, Objective, Outcome, Plan, Report};
 use crate::reconfigure::problem::{Problem, bonds, cells};
@@ -130,8 +132,7 @@ proptest! {
         }
     }
 
-    /// Stopping early, and ruling out by the moving module alone, never
-    /// change on which side of a floor a move is.
+    /// Stopping early never changes on which side of a floor a move is.
     #[test]
     fn a_floor_decides_as_the_full_margin_does(filled in polycube(6), choice in any::<usize>(), floor in 0.0..1.0_f64) {
         let state = cubes(&filled, 1);
@@ -146,6 +147,32 @@ proptest! {
         } else {
             prop_assert_eq!(decided, full);
         }
+    }
+
+    /// The bound from the moving module alone is above the whole robot's
+    /// margin, and the same wherever the neighbourhood is, whatever is far away.
+    #[test]
+    fn the_moving_module_alone_bounds_the_margin(filled in polycube(6), choice in any::<usize>(), by in -3..3_i32) {
+        let state = cubes(&filled, 1);
+        let problem = Problem::new(&state, &goal(state.clone())).unwrap();
+        let domain = Domain::new(&problem, true);
+        let layout = problem.start_layout();
+        let moves = domain.moves(layout);
+        let Some(&step) = moves.get(choice % moves.len().max(1)) else { return Ok(()) };
+        let bound = domain.at_most(layout, step);
+        let margin = domain.of_move(layout, &kept(layout, step), step, f64::NEG_INFINITY).margin;
+        prop_assert!(margin.lower <= bound, "{:?} above {}", margin, bound);
+
+        // Elsewhere on the ground, with one more module out of reach.
+        let shift = [by, -by, 0];
+        let far = Cell::from([20, 20, 0]);
+        let moved: Vec<Cell> = filled.iter().map(|&cell| displaced(cell, shift)).chain([far]).collect();
+        let other = Problem::new(&cubes(&moved, 1), &goal(cubes(&moved, 1))).unwrap();
+        let there = Move { from: displaced(step.from, shift), ..step };
+        let hood = Neighbourhood::new(&problem, layout, step);
+        prop_assert_eq!(&hood, &Neighbourhood::new(&other, other.start_layout(), there));
+        let again = Domain::new(&other, true).at_most(other.start_layout(), there);
+        prop_assert!(bound == again || (bound - again).abs() <= MARGIN_TOLERANCE * (1.0 - bound).abs().max(1.0));
     }
 
     /// Engaging one more connection never lowers the margin of a state.
@@ -355,6 +382,22 @@ fn further_plans_differ_in_more_than_the_order_of_independent_moves() {
         };
         assert_ne!(moved(best), moved(other), "the same moves in another order");
     }
+}
+
+#[test]
+fn a_report_says_when_further_plans_were_not_looked_for_to_the_end() {
+    let (start, target) = tower_to_row();
+    let of = |max_expansions| {
+        let options = Options { objective: Objective::Moves, plans: 1000, max_expansions, ..Options::default() };
+        plan(&start, &target, &options)
+    };
+    let best = solve(&start, &target, &Options { objective: Objective::Moves, ..Options::default() }, &mut |_| {});
+    let best = best.unwrap();
+    assert_eq!(best.alternatives_cut_by, None, "one plan was asked for, and there it is");
+    let cut = of(Some(best.statistics.expanded + 5));
+    assert_eq!(cut.plan, best.plan);
+    assert!(cut.alternatives.len() < 999);
+    assert_eq!((cut.outcome, cut.alternatives_cut_by), (Outcome::Solved, Some(Limit::Expansions)));
 }
 
 #[test]

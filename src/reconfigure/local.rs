@@ -1,0 +1,90 @@
+//! What pivots have in common: the same question about a module and what it
+//! touches on its way, in one layout and in many others.
+//!
+//! Knows where answers are the same; does not know what they are.
+
+use std::collections::HashMap;
+use std::hash::Hash;
+use std::sync::Mutex;
+
+use crate::robot::{Cell, Face, Orientation};
+
+use super::layout::{Layout, displaced, neighbour};
+use super::moves::{Motion, Move, Turn, pivot_axis};
+use super::problem::Problem;
+
+/// A pivot with all that its module touches strictly between its ends, up to a
+/// displacement. Valid away from ground and obstacles, whose place it does not know.
+///
+/// With the hinge at the origin and the axes of [`Move::room`], the module's
+/// corner goes round a circle of radius sqrt 2 and reaches the edges of its room at the
+/// ends only. So in its own plane it touches the support, and the landing of a quarter
+/// turn, along the hinge, and nothing else; its two faces across the axis touch
+/// the cells beside those that it sweeps and beside those two.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct Neighbourhood {
+    motion: Motion,
+    class: u16,
+    orientation: Orientation,
+    /// Filled cells that the module touches, from the one that it leaves, with
+    /// the types of the modules there, in a fixed order.
+    touched: Vec<(Cell, usize)>,
+}
+
+impl Neighbourhood {
+    /// What the module of a pivot touches in `layout`; `None` for a slide. The
+    /// cell that it leaves must be filled.
+    pub fn new(problem: &Problem, layout: &Layout, step: Move) -> Option<Self> {
+        let (plane, axis) = plane(step)?;
+        let moving = layout.placed()[layout.at(step.from).expect("a fitting move has a module")];
+        let beside = |side: Face| plane.iter().map(move |&cell| neighbour(cell, side));
+        let cells = plane.iter().copied().chain(beside(axis)).chain(beside(axis.opposite()));
+        let back = step.from.map(|coordinate| -coordinate);
+        let touched = cells.filter(|&cell| cell != step.from).filter_map(|cell| {
+            let class = layout.placed()[layout.at(cell)?].class;
+            Some((displaced(cell, back), problem.class(class).module_type))
+        });
+        Some(Self {
+            motion: step.motion,
+            class: moving.class,
+            orientation: moving.orientation,
+            touched: touched.collect(),
+        })
+    }
+}
+
+/// The cells in the plane of a pivot that its module sweeps or touches strictly
+/// between its ends, with the axis of its turn; `None` for a slide.
+pub fn plane(step: Move) -> Option<(Vec<Cell>, Face)> {
+    let Motion::Pivot { support, towards, turn } = step.motion else { return None };
+    let carrier = neighbour(step.from, support);
+    let mut cells = step.room();
+    cells.extend([step.from, carrier]);
+    if turn == Turn::Quarter {
+        cells.push(neighbour(carrier, towards));
+    }
+    Some((cells, pivot_axis(support, towards)))
+}
+
+/// Answers that are kept. Which were kept first depends on what is asked, never
+/// on time: searches ask from one thread.
+#[derive(Debug)]
+pub struct Memo<K, V>(Mutex<HashMap<K, V>>);
+
+impl<K: Eq + Hash, V: Copy> Memo<K, V> {
+    /// No answers yet.
+    pub fn new() -> Self {
+        Self(Mutex::new(HashMap::new()))
+    }
+
+    /// The answer to `key`, found by `find` the first time.
+    pub fn get(&self, key: K, find: impl FnOnce(&K) -> V) -> V {
+        let known = || self.0.lock().expect("no thread panics while it holds the answers");
+        if let Some(answer) = known().get(&key) {
+            return *answer;
+        }
+        let answer = find(&key);
+        known().insert(key, answer);
+        answer
+    }
+}

@@ -1,0 +1,279 @@
+//! Block-sparse Cholesky factors of the matrices of a body graph.
+//!
+//! The normal equations of a block's program have one 6 x 6 block per body and
+//! one per pair of bodies that a link joins, like the stiffness matrix of a frame
+//! of beams. Bodies are eliminated in order of least degree; the pattern is found
+//! once and serves every matrix on the same graph.
+//!
+//! Knows graphs and matrices, nothing of wrenches or cones.
+
+use std::collections::BTreeSet;
+
+/// A 6 x 6 matrix, by columns.
+pub(super) type Matrix = [[f64; 6]; 6];
+
+/// Least pivot, as a share of the diagonal entry it came from: what is left
+/// below that is rounding.
+const LEAST_PIVOT: f64 = 1e-14;
+
+/// A symmetric block matrix on the bodies of a graph, then its Cholesky factor.
+pub(super) struct Stiffness {
+    /// Position of each body in the order of elimination.
+    position: Vec<usize>,
+    /// Per position: the later positions whose blocks are not zero, ascending.
+    below: Vec<Vec<usize>>,
+    /// Per position: index of its diagonal block; those of `below` follow.
+    first: Vec<usize>,
+    /// Per position: where the products of each pair of its `below` blocks go.
+    targets: Vec<Vec<usize>>,
+    blocks: Vec<Matrix>,
+}
+
+impl Stiffness {
+    /// The zero matrix for `bodies` bodies of which `pairs` are joined.
+    pub(super) fn new(bodies: usize, pairs: impl Iterator<Item = (usize, usize)>) -> Self {
+        let (order, later) = least_degree(bodies, pairs);
+        let mut position = vec![0; bodies];
+        for (k, &body) in order.iter().enumerate() {
+            position[body] = k;
+        }
+        let mut below: Vec<Vec<usize>> = Vec::with_capacity(bodies);
+        let mut first = Vec::with_capacity(bodies);
+        let mut count = 0;
+        for neighbours in &later {
+            let mut rows: Vec<usize> = neighbours.iter().map(|&body| position[body]).collect();
+            rows.sort_unstable();
+            first.push(count);
+            count += 1 + rows.len();
+            below.push(rows);
+        }
+        let mut matrix = Self { position, below, first, targets: Vec::new(), blocks: vec![[[0.0; 6]; 6]; count] };
+        matrix.targets = (0..bodies)
+            .map(|k| {
+                let rows = &matrix.below[k];
+                let pairs =
+                    rows.iter().enumerate().flat_map(|(n, &column)| rows[n..].iter().map(move |&row| (row, column)));
+                pairs.map(|(row, column)| matrix.index(row, column)).collect()
+            })
+            .collect();
+        matrix
+    }
+
+    /// Sets every entry to zero.
+    pub(super) fn clear(&mut self) {
+        self.blocks.fill([[0.0; 6]; 6]);
+    }
+
+    /// Adds `u u'` for a column `u` that is not zero on one or two bodies.
+    pub(super) fn add_square(&mut self, column: &[(usize, [f64; 6])]) {
+        for (i, a) in column {
+            for (j, b) in column {
+                let (row, at) = (self.position[*i], self.position[*j]);
+                if row >= at {
+                    let index = self.index(row, at);
+                    for (target, factor) in self.blocks[index].iter_mut().zip(b) {
+                        for (entry, value) in target.iter_mut().zip(a) {
+                            *entry += value * factor;
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// Overwrites the matrix, which must be positive semidefinite, with its factor.
+    pub(super) fn factorise(&mut self) {
+        let diagonal = |&first: &usize| -> [f64; 6] { std::array::from_fn(|k| self.blocks[first][k][k]) };
+        let least: Vec<[f64; 6]> =
+            self.first.iter().map(diagonal).map(|d| d.map(|d| (d * LEAST_PIVOT).max(f64::MIN_POSITIVE))).collect();
+        for (k, least) in least.iter().enumerate() {
+            let first = self.first[k];
+            let count = self.below[k].len();
+            let pivot = &mut self.blocks[first];
+            cholesky(pivot, least);
+            let pivot = *pivot;
+            let column = &mut self.blocks[first + 1..=first + count];
+            for block in column.iter_mut() {
+                divide(block, &pivot);
+            }
+            let mut target = self.targets[k].iter();
+            for n in 0..count {
+                let b = self.blocks[first + 1 + n];
+                for m in n..count {
+                    let a = self.blocks[first + 1 + m];
+                    subtract_product(&mut self.blocks[*target.next().expect("one per pair")], &a, &b);
+                }
+            }
+        }
+    }
+
+    /// `x := L^-1 x`, by bodies; the result is in the order of elimination.
+    pub(super) fn forward(&self, x: &[f64]) -> Vec<f64> {
+        let mut y = vec![0.0; x.len()];
+        for (body, &k) in self.position.iter().enumerate() {
+            y[6 * k..6 * k + 6].copy_from_slice(&x[6 * body..6 * body + 6]);
+        }
+        for k in 0..self.first.len() {
+            let pivot = &self.blocks[self.first[k]];
+            let mut own: [f64; 6] = std::array::from_fn(|r| y[6 * k + r]);
+            for c in 0..6 {
+                own[c] /= pivot[c][c];
+                for r in c + 1..6 {
+                    own[r] -= pivot[c][r] * own[c];
+                }
+            }
+            y[6 * k..6 * k + 6].copy_from_slice(&own);
+            for (n, &row) in self.below[k].iter().enumerate() {
+                let block = &self.blocks[self.first[k] + 1 + n];
+                let part = &mut y[6 * row..6 * row + 6];
+                for (column, factor) in block.iter().zip(&own) {
+                    for (entry, value) in part.iter_mut().zip(column) {
+                        *entry -= value * factor;
+                    }
+                }
+            }
+        }
+        y
+    }
+
+    /// `L'^-1 y` for `y` in the order of elimination; the result is by bodies.
+    pub(super) fn backward(&self, mut y: Vec<f64>) -> Vec<f64> {
+        for k in (0..self.first.len()).rev() {
+            let mut own: [f64; 6] = std::array::from_fn(|r| y[6 * k + r]);
+            for (n, &row) in self.below[k].iter().enumerate() {
+                let block = &self.blocks[self.first[k] + 1 + n];
+                let part = &y[6 * row..6 * row + 6];
+                for (column, entry) in block.iter().zip(&mut own) {
+                    *entry -= column.iter().zip(part).map(|(a, b)| a * b).sum::<f64>();
+                }
+            }
+            let pivot = &self.blocks[self.first[k]];
+            for c in (0..6).rev() {
+                for r in c + 1..6 {
+                    own[c] -= pivot[c][r] * own[r];
+                }
+                own[c] /= pivot[c][c];
+            }
+            y[6 * k..6 * k + 6].copy_from_slice(&own);
+        }
+        let mut x = vec![0.0; y.len()];
+        for (body, &k) in self.position.iter().enumerate() {
+            x[6 * body..6 * body + 6].copy_from_slice(&y[6 * k..6 * k + 6]);
+        }
+        x
+    }
+
+    /// Index of the block at positions `(row, column)`, `row >= column`.
+    fn index(&self, row: usize, column: usize) -> usize {
+        if row == column {
+            return self.first[column];
+        }
+        let place = self.below[column].binary_search(&row).expect("in the pattern");
+        self.first[column] + 1 + place
+    }
+}
+
+/// An order of elimination, least degree first, and per step the bodies that
+/// remain and are joined to it, directly or through eliminated ones.
+fn least_degree(bodies: usize, pairs: impl Iterator<Item = (usize, usize)>) -> (Vec<usize>, Vec<Vec<usize>>) {
+    let mut neighbours = vec![BTreeSet::new(); bodies];
+    for (i, j) in pairs.filter(|(i, j)| i != j) {
+        neighbours[i].insert(j);
+        neighbours[j].insert(i);
+    }
+    let mut queue: BTreeSet<(usize, usize)> = (0..bodies).map(|i| (neighbours[i].len(), i)).collect();
+    let (mut order, mut later) = (Vec::with_capacity(bodies), Vec::with_capacity(bodies));
+    while let Some((_, body)) = queue.pop_first() {
+        let around: Vec<usize> = std::mem::take(&mut neighbours[body]).into_iter().collect();
+        for &i in &around {
+            queue.remove(&(neighbours[i].len(), i));
+            neighbours[i].remove(&body);
+            neighbours[i].extend(around.iter().copied().filter(|&j| j != i));
+            queue.insert((neighbours[i].len(), i));
+        }
+        order.push(body);
+        later.push(around);
+    }
+    (order, later)
+}
+
+/// Overwrites the lower triangle with the Cholesky factor.
+fn cholesky(matrix: &mut Matrix, least: &[f64; 6]) {
+    for c in 0..6 {
+        let root = matrix[c][c].max(least[c]).sqrt();
+        matrix[c][c] = root;
+        for entry in &mut matrix[c][c + 1..] {
+            *entry /= root;
+        }
+        let column = matrix[c];
+        for d in c + 1..6 {
+            for r in d..6 {
+                matrix[d][r] -= column[r] * column[d];
+            }
+        }
+    }
+}
+
+/// `block := block L'^-1`.
+fn divide(block: &mut Matrix, pivot: &Matrix) {
+    for c in 0..6 {
+        for b in 0..c {
+            let (factor, column) = (pivot[b][c], block[b]);
+            for (entry, value) in block[c].iter_mut().zip(&column) {
+                *entry -= value * factor;
+            }
+        }
+        let inverse = 1.0 / pivot[c][c];
+        for entry in &mut block[c] {
+            *entry *= inverse;
+        }
+    }
+}
+
+/// `target -= a b'`.
+fn subtract_product(target: &mut Matrix, a: &Matrix, b: &Matrix) {
+    for (c, column) in target.iter_mut().enumerate() {
+        for k in 0..6 {
+            for (entry, value) in column.iter_mut().zip(&a[k]) {
+                *entry -= value * b[k][c];
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn solves_a_ring_of_bodies() {
+        let bodies = 7;
+        let pairs: Vec<(usize, usize)> = (0..bodies).map(|i| (i, (i + 1) % bodies)).collect();
+        let mut matrix = Stiffness::new(bodies, pairs.iter().copied());
+        let mut columns = Vec::new();
+        for (n, &(i, j)) in pairs.iter().enumerate() {
+            for k in 0..8 {
+                let entry = |seed: usize| ((seed * 7 + k * 13 + n * 5) % 11) as f64 - 5.0;
+                columns.push([(i, std::array::from_fn(entry)), (j, std::array::from_fn(|r| entry(r * r + 3)))]);
+            }
+        }
+        for column in &columns {
+            matrix.add_square(column);
+        }
+        let wanted: Vec<f64> = (0..6 * bodies).map(|k| (k as f64 * 0.7).sin()).collect();
+        let mut rhs = vec![0.0; wanted.len()];
+        for column in &columns {
+            let along: f64 = column.iter().flat_map(|(i, a)| a.iter().zip(&wanted[6 * i..])).map(|(a, b)| a * b).sum();
+            for (i, a) in column {
+                for r in 0..6 {
+                    rhs[6 * i + r] += a[r] * along;
+                }
+            }
+        }
+        matrix.factorise();
+        let solved = matrix.backward(matrix.forward(&rhs));
+        for (a, b) in solved.iter().zip(&wanted) {
+            assert!((a - b).abs() < 1e-9, "{a} {b}");
+        }
+    }
+}
