@@ -14,6 +14,60 @@ use serde::Deserialize;
 pub struct Manifest {
     /// Structures by name: `structures/NAME.json`.
     pub structures: IndexMap<String, StructureCase>,
+    /// Planning problems by name: `cubes/NAME/start.json` and `goal.json`.
+    pub cubes: IndexMap<String, PlanningCase>,
+}
+
+/// The expected answers to a planning problem.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PlanningCase {
+    /// Why the problem is in the library.
+    pub why: String,
+    /// How many modules the robot has.
+    pub modules: usize,
+    /// The answer when the fewest moves are asked for.
+    pub moves: FewestMoves,
+    /// The answer when the largest margin is asked for, where that is quick to prove.
+    pub margin: Option<LargestMargin>,
+    /// The answer when stability is left out.
+    pub by_geometry: Option<ByGeometry>,
+    /// How many plans with the fewest moves there are at least.
+    pub plans: Option<usize>,
+}
+
+/// The expected answer to the question for the fewest moves.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FewestMoves {
+    /// `solved` or `impossible`.
+    pub outcome: String,
+    /// The number of moves; `None` when impossible.
+    pub moves: Option<u32>,
+    /// Where the answer comes from.
+    pub source: String,
+}
+
+/// The expected answer to the question for the largest margin.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LargestMargin {
+    /// The fewest moves with that margin.
+    pub moves: u32,
+    /// The margin, where it is known by another way than a search.
+    pub value: Option<f64>,
+    /// Where the answer comes from.
+    pub source: String,
+}
+
+/// The expected answer when stability is left out.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ByGeometry {
+    /// The number of moves.
+    pub moves: u32,
+    /// Whether the robot breaks when that plan is carried out.
+    pub breaks: bool,
 }
 
 /// The expected answer to a structure.
@@ -67,6 +121,16 @@ mod tests {
         let present: Vec<_> =
             files.iter().map(|path| path.file_stem().unwrap().to_str().unwrap().to_string()).collect();
         let mut present = present;
+        present.sort();
+        assert_eq!(present, expected);
+    }
+
+    #[test]
+    fn every_planning_problem_has_an_expected_answer_and_the_other_way_round() {
+        let mut expected: Vec<_> = manifest().unwrap().cubes.into_keys().collect();
+        expected.sort();
+        let entries = std::fs::read_dir(root().join("cubes")).unwrap();
+        let mut present: Vec<_> = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
         present.sort();
         assert_eq!(present, expected);
     }
