@@ -145,3 +145,8 @@ pub mod reconfigure;
 pub mod robot;
 pub mod spatial;
 pub mod statics;
+
+/// The README's examples, compiled.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+pub struct Readme;
