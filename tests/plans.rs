@@ -21,9 +21,12 @@ fn main() {
     libtest_mimic::run(&Arguments::from_args(), trials).exit();
 }
 
+/// A question to a problem.
+type Question = Box<dyn FnOnce(&Problem) -> Result<(), Failed> + Send>;
+
 fn trials(name: &str, case: &PlanningCase) -> Vec<Trial> {
     let mut trials = Vec::new();
-    let mut add = |question: &str, test: Box<dyn FnOnce(&Problem) -> Result<(), Failed> + Send>| {
+    let mut add = |question: &str, test: Question| {
         let problem = name.to_string();
         trials.push(Trial::test(format!("{name}::{question}"), move || test(&read(&problem)?)));
     };
