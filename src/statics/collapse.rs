@@ -29,9 +29,10 @@ use super::tolerances::DATA;
 const FORCE_MULTIPLE: f64 = 1e10;
 
 /// Ways of asking for the mechanism, tried in turn.
-const ATTEMPTS: [Attempt; 3] = [
+const ATTEMPTS: [Attempt; 4] = [
     Attempt { tolerance: 1e-9, inset: 1e-4, regularization: 1e-8 },
     Attempt { tolerance: 1e-10, inset: 1e-8, regularization: 1e-8 },
+    Attempt { tolerance: 1e-10, inset: 0.0, regularization: 1e-8 },
     Attempt { tolerance: 1e-11, inset: 0.0, regularization: 1e-9 },
 ];
 
@@ -50,7 +51,7 @@ pub(super) fn find(structure: &Structure, block: &Block, loads: &[BodyLoad]) -> 
     for attempt in &ATTEMPTS {
         let Some(iterate) = solve(&program, attempt) else { continue };
         if !(iterate.t > 0.5) {
-            return None;
+            continue;
         }
         let twists = program.twists(&iterate.v);
         if proves(&reduced, &program, &twists) {

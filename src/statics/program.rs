@@ -90,9 +90,21 @@ pub(super) struct Program {
 }
 
 impl Program {
+    /// The program scaled to each body's own forces, however small.
     pub(super) fn new(structure: &Structure, block: &Block, loads: &[BodyLoad], purpose: Purpose) -> Self {
+        Self::with_floor(structure, block, loads, purpose, 1e-9)
+    }
+
+    /// The program with no body's force scale below `floor` times the largest.
+    pub(super) fn with_floor(
+        structure: &Structure,
+        block: &Block,
+        loads: &[BodyLoad],
+        purpose: Purpose,
+        floor: f64,
+    ) -> Self {
         let frames: Vec<LinkFrame> = block.links.iter().map(|&link| LinkFrame::new(structure, link)).collect();
-        let scales = Scales::new(structure, block, &frames, loads);
+        let scales = Scales::new(structure, block, &frames, loads, floor);
         let mut row_factor = Vec::with_capacity(6 * block.bodies.len());
         let mut load = Vec::with_capacity(6 * block.bodies.len());
         for (i, &body) in block.bodies.iter().enumerate() {

@@ -15,9 +15,8 @@ use super::frame::LinkFrame;
 use super::loads::BodyLoad;
 use super::structure::Structure;
 
-/// Smallest force scale, as a fraction of the largest in the block: a body
-/// without weight still needs a scale.
-const FLOOR: f64 = 1e-9;
+/// Smallest lever, as a fraction of the longest in the block.
+const SHORTEST: f64 = 3e-5;
 
 /// Typical sizes of a block's quantities.
 pub(super) struct Scales {
@@ -31,7 +30,14 @@ pub(super) struct Scales {
 
 impl Scales {
     /// `frames` are those of the block's links. At least one load must not be zero.
-    pub(super) fn new(structure: &Structure, block: &Block, frames: &[LinkFrame], loads: &[BodyLoad]) -> Self {
+    /// No force is less than `floor` times the largest: a body without weight still needs a scale.
+    pub(super) fn new(
+        structure: &Structure,
+        block: &Block,
+        frames: &[LinkFrame],
+        loads: &[BodyLoad],
+        floor: f64,
+    ) -> Self {
         let local = |vertex: Vertex| match vertex {
             Vertex::Body(i) if vertex != block.root => block.bodies.binary_search(&i).ok(),
             _ => None,
@@ -58,7 +64,7 @@ impl Scales {
             }
         }
         let longest = lever.iter().copied().fold(0.0, f64::max);
-        let shortest = if longest > 0.0 { longest * FLOOR.sqrt() } else { 1.0 };
+        let shortest = if longest > 0.0 { longest * SHORTEST } else { 1.0 };
         for value in &mut lever {
             *value = value.max(shortest);
         }
@@ -89,7 +95,7 @@ impl Scales {
         }
         let largest = force.iter().copied().fold(0.0, f64::max);
         for value in &mut force {
-            *value = value.max(FLOOR * largest);
+            *value = value.max(floor * largest);
         }
         let link = frames
             .iter()

@@ -49,6 +49,9 @@ const MIXES: [f64; 4] = [1e-6, 1e-4, 1e-2, 1e-1];
 /// facing each other.
 const OPPOSITE: f64 = 0.5;
 
+/// Smallest force scale, relative to the largest, of the last resort.
+const EVEN: f64 = 1e-2;
+
 /// Shares of the largest contact force below which a contact is left out, tried
 /// in turn until the rest balances.
 const IDLE: [f64; 4] = [0.0, 1e-6, 1e-4, 1e-2];
@@ -83,6 +86,19 @@ pub(super) fn assess_block(structure: &Structure, block: &Block, loads: &[BodyLo
         }
         if let Some(iterate) = conic::solve(&program, attempt) {
             best.improve(&problem, &iterate, question);
+        }
+    }
+    if best.upper.is_infinite() && !best.answers(question) {
+        // Bodies that carry next to nothing can spoil the scaling of all others.
+        let program = Program::with_floor(structure, block, loads, Purpose::Utilisation, EVEN);
+        let problem = Problem { structure, block, loads, program: &program };
+        for attempt in &ATTEMPTS[..2] {
+            if let Some(iterate) = conic::solve(&program, attempt) {
+                best.improve(&problem, &iterate, question);
+            }
+            if best.answers(question) {
+                break;
+            }
         }
     }
     let tight = best.answers(question);
