@@ -86,7 +86,7 @@ fn scenes() -> Vec<(String, Structure)> {
 }
 
 fn row(name: &str, scene: &Structure, repetitions: usize) -> String {
-    let answer = assess(scene, Question::Value).expect("a valid scene");
+    let answer = assess(scene, Question::VALUE).expect("a valid scene");
     if let Err(fault) = recheck::recheck(scene, &answer) {
         panic!("{name}: {fault}");
     }
@@ -106,7 +106,7 @@ fn row(name: &str, scene: &Structure, repetitions: usize) -> String {
     let started = Instant::now();
     while times[0].len() < repetitions && (times[0].is_empty() || started.elapsed() < 3 * BUDGET) {
         times[0].push(milliseconds(|| paper::solve(scene, TOLERANCE)));
-        times[1].push(milliseconds(|| assess(scene, Question::Value)));
+        times[1].push(milliseconds(|| assess(scene, Question::VALUE)));
         times[2].push(milliseconds(|| assess(scene, Question::Decide(1.0))));
     }
     let [paper, value, decide] = times.map(median);

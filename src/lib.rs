@@ -75,7 +75,7 @@
 //!     }],
 //!     ..Structure::default()
 //! };
-//! let answer = assess(&structure, Question::Value).expect("the data is sound");
+//! let answer = assess(&structure, Question::VALUE).expect("the data is sound");
 //! assert_eq!(answer.verdict, Verdict::Stable);
 //! assert!(answer.utilisation.contains(0.0981));
 //! ```

@@ -34,7 +34,7 @@ fn recipes() -> impl Strategy<Value = Recipe> {
 
 /// The answer, which must stand up to the independent check.
 fn answer(structure: &Structure) -> Assessment {
-    let answer = assess(structure, Question::Value).expect("the generator makes valid structures");
+    let answer = assess(structure, Question::VALUE).expect("the generator makes valid structures");
     if let Err(fault) = recheck(structure, &answer) {
         panic!("{fault}\n{:?} {:?}", answer.verdict, answer.utilisation);
     }

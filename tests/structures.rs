@@ -15,7 +15,7 @@ fn main() {
 fn check(name: &str, case: &StructureCase) -> Result<(), Failed> {
     let path = problems::root().join("structures").join(format!("{name}.json"));
     let named = read_structure(&SourceFile::new(name, std::fs::read(path)?))?;
-    let answer = assess(&named.structure, Question::Value).map_err(|problems| format!("{problems:?}"))?;
+    let answer = assess(&named.structure, Question::VALUE).map_err(|problems| format!("{problems:?}"))?;
     let verdict = match answer.verdict {
         Verdict::Stable => "stable",
         Verdict::InternallyUnstable => "internally-unstable",

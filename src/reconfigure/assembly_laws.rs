@@ -12,7 +12,7 @@ use crate::spatial::{Pose, Rotation, Vec3};
 use crate::statics::{Bracket, Connector, Model, Question, assess};
 
 fn utilisation(configuration: &Configuration) -> Bracket {
-    assess(&assemble(configuration).structure, Question::Value).expect("a sound structure").utilisation
+    assess(&assemble(configuration).structure, Question::VALUE).expect("a sound structure").utilisation
 }
 
 /// Connected robots: each further cube is put on a face of an earlier one.
@@ -87,7 +87,7 @@ fn half_pivot(module_type: usize, up: Face, along: Face) -> f64 {
         let pose = motion.pose(&placements[1].pose(2.0 * half), f64::from(i) / 24.0);
         let moving = Some(Moving { module: 1, pose });
         let state = Transient { placements: &placements, moving, engaged: &engaged };
-        assess(&assembler.assemble(&state).structure, Question::Value).unwrap().utilisation.upper
+        assess(&assembler.assemble(&state).structure, Question::VALUE).unwrap().utilisation.upper
     };
     (0..=24).map(sample).fold(0.0, f64::max)
 }

@@ -164,7 +164,7 @@ impl<'a> Oracle<'a> {
     }
 
     fn read(&self, assembly: &Assembly, state: &Transient, instant: Instant) -> Worst {
-        match assess(&assembly.structure, Question::Value) {
+        match assess(&assembly.structure, Question::VALUE) {
             Ok(assessment) => {
                 let weakest = assessment.weakest_connection().map(|i| state.engaged[assembly.connections[i]]);
                 let weakest = weakest.map(|held| seam(&held, state.placements));

@@ -125,7 +125,7 @@ impl<'s> Answer<'s> {
         self.collapsed
             || match question {
                 Question::Decide(threshold) => self.utilisation.lower > threshold,
-                Question::Value => false,
+                Question::ToGap(_) => false,
             }
     }
 

@@ -64,8 +64,14 @@ pub enum Question {
     /// Only whether the utilisation is at most this: the bracket may be wide,
     /// as long as it lies on one side of the threshold.
     Decide(f64),
-    /// The utilisation itself, as tightly as the solver can.
-    Value,
+    /// The utilisation itself, with a bracket no wider than this share of the
+    /// larger of it and 1, and the verdict if that is narrower still.
+    ToGap(f64),
+}
+
+impl Question {
+    /// The utilisation to seven digits, ten times tighter than users are promised.
+    pub const VALUE: Self = Self::ToGap(1e-7);
 }
 
 /// The part of the answer that concerns one connection.

@@ -15,7 +15,6 @@ use super::loads::BodyLoad;
 use super::part::Part;
 use super::program::{Program, Purpose, local_body};
 use super::structure::Structure;
-use super::tolerances::VALUE_WIDTH;
 
 /// Accuracy of t, relative to the larger of t and 1, that the block's own
 /// interior-point method is asked for: well inside the bracket's width.
@@ -168,10 +167,10 @@ impl Best {
 
     fn answers(&self, question: Question) -> bool {
         match question {
-            Question::Decide(threshold) if self.upper <= threshold || self.lower > threshold => true,
-            _ => {
+            Question::Decide(threshold) => self.upper <= threshold || self.lower > threshold,
+            Question::ToGap(gap) => {
                 let straddles_one = self.lower <= 1.0 && self.upper > 1.0;
-                let width = VALUE_WIDTH * self.upper.max(1.0);
+                let width = gap * self.upper.max(1.0);
                 self.upper.is_finite() && self.upper - self.lower <= width && !straddles_one
             }
         }

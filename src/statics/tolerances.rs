@@ -18,10 +18,6 @@ pub(super) const BALANCE: f64 = 1e-11;
 /// a few units in the last place.
 pub(super) const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
-/// Bracket width, relative to `max(1, t)`, at which a value counts as found.
-/// Ten times tighter than what users are promised (1e-6).
-pub(super) const VALUE_WIDTH: f64 = 1e-7;
-
 /// Share of a mechanism's dissipation from which a connection counts as
 /// critical (dimensionless): above the solver's noise, below any true share.
 pub(super) const CRITICAL_SHARE: f64 = 1e-5;

@@ -10,7 +10,7 @@ use steadfast::statics::{Anchor, Assessment, Connector, Model, Structure};
 /// Relative tolerance of every check.
 const TOLERANCE: f64 = 1e-9;
 
-/// Finds fault with an answer to [`steadfast::statics::Question::Value`].
+/// Finds fault with an answer to [`steadfast::statics::Question::VALUE`].
 ///
 /// # Errors
 /// What is wrong, in words.

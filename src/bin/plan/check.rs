@@ -24,7 +24,7 @@ pub fn run(arguments: &CheckArguments) -> io::Result<Exit> {
         Err(diagnostics) => return output::bad_input(&diagnostics, arguments.json),
     };
     let clock = Instant::now();
-    let answer = match assess(&named.structure, Question::Value) {
+    let answer = match assess(&named.structure, Question::VALUE) {
         Ok(answer) => answer,
         Err(problems) => {
             let reasons = problems.iter().map(|problem| format!("{}: {}", problem.place, problem.problem));

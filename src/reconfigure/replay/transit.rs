@@ -149,7 +149,7 @@ impl<'a> Checker<'a> {
 
     fn sample(&self, modules: &Configuration, state: &Transient, phase: f64) -> Result<Sample, Refusal> {
         let assembly = self.assembler.assemble(state);
-        let assessment = assess(&assembly.structure, Question::Value).map_err(Refusal::Structure)?;
+        let assessment = assess(&assembly.structure, Question::VALUE).map_err(Refusal::Structure)?;
         let connection = |i: usize| ports(modules, &state.engaged[assembly.connections[i]]);
         let limit = assessment.utilisation.lower * (1.0 - claims::AT_LIMIT);
         let limiting = assessment.connections.iter().enumerate();

@@ -188,7 +188,7 @@ proptest! {
         thin(&mut state, keep);
         let margin = |state: &Configuration| {
             let structure = crate::reconfigure::assembly::assemble(state).structure;
-            crate::statics::assess(&structure, crate::statics::Question::Value).unwrap().margin()
+            crate::statics::assess(&structure, crate::statics::Question::VALUE).unwrap().margin()
         };
         let before = margin(&state);
         for open in cells(&state).touching() {
