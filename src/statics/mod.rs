@@ -38,6 +38,7 @@ mod program;
 mod respect;
 mod scales;
 mod second_order;
+mod series;
 mod solve_block;
 mod stiffness;
 mod structure;
