@@ -9,6 +9,7 @@ use super::closed_form::assess_bridge;
 use super::frame::LinkFrame;
 use super::loads::{BodyLoad, lump, own_loads};
 use super::part::Part;
+use super::rung::Rung;
 use super::solve_block::assess_block;
 use super::structure::Structure;
 use super::tolerances::{CRITICAL_SHARE, DATA, TIE};
@@ -85,6 +86,7 @@ struct Answer<'s> {
     candidates: Vec<(f64, usize, Vec<f64>)>,
     left_out: LeftOut,
     undecided_because: Option<String>,
+    decided_by: Rung,
 }
 
 impl<'s> Answer<'s> {
@@ -105,6 +107,7 @@ impl<'s> Answer<'s> {
                 ..LeftOut::default()
             },
             undecided_because: None,
+            decided_by: Rung::ClosedForm,
         }
     }
 
@@ -147,11 +150,13 @@ impl<'s> Answer<'s> {
             return;
         }
         match part {
-            Part::Collapses { mechanism } => {
+            Part::Collapses { mechanism, decided_by } => {
+                self.decided_by = self.decided_by.max(decided_by);
                 self.collapsed = true;
                 self.moving = Some((index, mechanism));
             }
-            Part::Stands { utilisation, wrenches, demands, mechanism, shares, undecided_because } => {
+            Part::Stands { utilisation, wrenches, demands, mechanism, shares, undecided_because, decided_by } => {
+                self.decided_by = self.decided_by.max(decided_by);
                 for ((&link, wrench), demand) in self.blocks[index].links.iter().zip(&wrenches).zip(demands) {
                     self.record(link, wrench, demand);
                 }
@@ -244,6 +249,7 @@ impl<'s> Answer<'s> {
             mechanism: self.mechanism,
             left_out: self.left_out,
             undecided_because,
+            decided_by: self.decided_by,
         }
     }
 }

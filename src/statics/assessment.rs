@@ -2,6 +2,8 @@
 
 use crate::spatial::{Twist, Vec3, Wrench};
 
+use super::rung::Rung;
+
 /// An interval that is guaranteed to hold a value, both ends included.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bracket {
@@ -123,6 +125,8 @@ pub struct Assessment {
     pub left_out: LeftOut,
     /// Why the verdict is undecided; `None` for any other verdict.
     pub undecided_because: Option<String>,
+    /// What the answer took.
+    pub decided_by: Rung,
 }
 
 impl Assessment {

@@ -14,6 +14,7 @@ use super::interior_point;
 use super::loads::BodyLoad;
 use super::part::Part;
 use super::program::{Program, Purpose, local_body};
+use super::rung::Rung;
 use super::structure::Structure;
 
 /// Accuracy of t, relative to the larger of t and 1, that the block's own
@@ -77,8 +78,9 @@ pub(super) fn assess_block(structure: &Structure, block: &Block, loads: &[BodyLo
         && !best.answers(question)
         && let Some(mechanism) = collapse::find(structure, block, loads)
     {
-        return Part::Collapses { mechanism };
+        return Part::Collapses { mechanism, decided_by: Rung::Solved };
     }
+    let own = best.answers(question);
     for attempt in ATTEMPTS[first..].iter().chain(&ATTEMPTS[..first]) {
         if best.answers(question) {
             break;
@@ -115,6 +117,7 @@ pub(super) fn assess_block(structure: &Structure, block: &Block, loads: &[BodyLo
                 block.bodies.len()
             )
         }),
+        decided_by: if own { Rung::Solved } else { Rung::SolvedGenerally },
     }
 }
 
@@ -140,6 +143,7 @@ fn unloaded(block: &Block) -> Part {
         mechanism: vec![Twist::ZERO; block.bodies.len()],
         shares: vec![0.0; block.links.len()],
         undecided_because: None,
+        decided_by: Rung::ClosedForm,
     }
 }
 
