@@ -34,13 +34,38 @@ use super::validate::{InvalidStructure, validate};
 /// Non-finite or out-of-range data, or indices that point nowhere; all of them at once.
 pub fn assess(structure: &Structure, question: Question) -> Result<Assessment, Vec<InvalidStructure>> {
     validate(structure)?;
+    Ok(assess_with(structure, question, &mut Unknown))
+}
+
+/// What is known about a structure's blocks before and after they are solved.
+pub(super) trait Knowledge {
+    /// What can be said about a block with cycles without solving it.
+    fn bound(&mut self, structure: &Structure, block: &Block, loads: &[BodyLoad]) -> Option<Part>;
+
+    /// Takes note of the answer for a block with cycles.
+    fn note(&mut self, block: &Block, part: &Part);
+}
+
+/// Nothing, for a structure that is met for the first time.
+struct Unknown;
+
+impl Knowledge for Unknown {
+    fn bound(&mut self, _: &Structure, _: &Block, _: &[BodyLoad]) -> Option<Part> {
+        None
+    }
+
+    fn note(&mut self, _: &Block, _: &Part) {}
+}
+
+/// Answers for a valid structure. What `knowledge` answers is not solved.
+pub(super) fn assess_with(structure: &Structure, question: Question, knowledge: &mut impl Knowledge) -> Assessment {
     let pieces = cut(structure);
     let loads = lump(structure, &pieces.blocks, own_loads(structure));
     let mut answer = Answer::new(structure, &pieces.blocks);
     for &root in &pieces.afloat {
         if let Some(twist) = drift(&loads[root]) {
             answer.collapse_afloat(root, twist);
-            return Ok(answer.finish());
+            return answer.finish();
         }
     }
     let (bridges, cyclic): (Vec<usize>, Vec<usize>) =
@@ -50,7 +75,21 @@ pub fn assess(structure: &Structure, question: Question) -> Result<Assessment, V
         answer.left_out_link(pieces.blocks[index].links[0]);
         answer.add(index, part);
     }
+    let mut open = Vec::new();
     for index in cyclic {
+        if answer.settled(question) {
+            answer.stop();
+            return answer.finish();
+        }
+        match knowledge.bound(structure, &pieces.blocks[index], &loads) {
+            Some(part) if part.answers(question) => {
+                knowledge.note(&pieces.blocks[index], &part);
+                answer.add(index, part);
+            }
+            _ => open.push(index),
+        }
+    }
+    for index in open {
         if answer.settled(question) {
             answer.stop();
             break;
@@ -58,9 +97,10 @@ pub fn assess(structure: &Structure, question: Question) -> Result<Assessment, V
         let block = &pieces.blocks[index];
         let part = assess_block(structure, block, &loads, question);
         answer.count_solved(block);
+        knowledge.note(block, &part);
         answer.add(index, part);
     }
-    Ok(answer.finish())
+    answer.finish()
 }
 
 /// The motion in which a body without any support is carried off by its load;

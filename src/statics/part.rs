@@ -2,7 +2,7 @@
 
 use crate::spatial::{Twist, Wrench};
 
-use super::assessment::Bracket;
+use super::assessment::{Bracket, Question};
 use super::rung::Rung;
 
 /// What was found out about one block.
@@ -29,4 +29,14 @@ pub(super) enum Part {
         /// What the answer took.
         decided_by: Rung,
     },
+}
+
+impl Part {
+    /// Whether this is as much as `question` wants to know about the block.
+    pub(super) fn answers(&self, question: Question) -> bool {
+        match self {
+            Self::Stands { utilisation, .. } => question.is_answered_by(utilisation),
+            Self::Collapses { .. } => true,
+        }
+    }
 }

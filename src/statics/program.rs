@@ -103,29 +103,7 @@ impl Program {
         purpose: Purpose,
         floor: f64,
     ) -> Self {
-        let frames: Vec<LinkFrame> = block.links.iter().map(|&link| LinkFrame::new(structure, link)).collect();
-        let scales = Scales::new(structure, block, &frames, loads, floor);
-        let mut row_factor = Vec::with_capacity(6 * block.bodies.len());
-        let mut load = Vec::with_capacity(6 * block.bodies.len());
-        for (i, &body) in block.bodies.iter().enumerate() {
-            let (force, torque) = (1.0 / scales.force[i], 1.0 / (scales.force[i] * scales.lever[i]));
-            row_factor.extend([force, force, force, torque, torque, torque]);
-            let wrench = &loads[body].wrench;
-            load.extend(wrench.force.iter().map(|f| f * force));
-            load.extend(wrench.torque.iter().map(|m| m * torque));
-        }
-        let mut program = Self {
-            purpose,
-            groups: Vec::new(),
-            columns: Vec::new(),
-            preload: Vec::new(),
-            preload_local: vec![Wrench::ZERO; block.links.len()],
-            load,
-            row_factor,
-            t_scale: 1.0,
-            scales,
-            frames,
-        };
+        let mut program = Self { purpose, ..Self::unstated(structure, block, loads, floor) };
         match purpose {
             Purpose::Utilisation => program.t_scale = program.typical_utilisation(structure, block),
             Purpose::Support => {
@@ -137,6 +115,33 @@ impl Program {
             program.add_link(structure, block, index, link);
         }
         program
+    }
+
+    /// Frames, scales and loads without any variable: what evaluating bounds takes.
+    pub(super) fn unstated(structure: &Structure, block: &Block, loads: &[BodyLoad], floor: f64) -> Self {
+        let frames: Vec<LinkFrame> = block.links.iter().map(|&link| LinkFrame::new(structure, link)).collect();
+        let scales = Scales::new(structure, block, &frames, loads, floor);
+        let mut row_factor = Vec::with_capacity(6 * block.bodies.len());
+        let mut load = Vec::with_capacity(6 * block.bodies.len());
+        for (i, &body) in block.bodies.iter().enumerate() {
+            let (force, torque) = (1.0 / scales.force[i], 1.0 / (scales.force[i] * scales.lever[i]));
+            row_factor.extend([force, force, force, torque, torque, torque]);
+            let wrench = &loads[body].wrench;
+            load.extend(wrench.force.iter().map(|f| f * force));
+            load.extend(wrench.torque.iter().map(|m| m * torque));
+        }
+        Self {
+            purpose: Purpose::Utilisation,
+            groups: Vec::new(),
+            columns: Vec::new(),
+            preload: Vec::new(),
+            preload_local: vec![Wrench::ZERO; block.links.len()],
+            load,
+            row_factor,
+            t_scale: 1.0,
+            scales,
+            frames,
+        }
     }
 
     pub(super) fn rows(&self) -> usize {

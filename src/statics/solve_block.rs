@@ -170,14 +170,7 @@ impl Best {
     }
 
     fn answers(&self, question: Question) -> bool {
-        match question {
-            Question::Decide(threshold) => self.upper <= threshold || self.lower > threshold,
-            Question::ToGap(gap) => {
-                let straddles_one = self.lower <= 1.0 && self.upper > 1.0;
-                let width = gap * self.upper.max(1.0);
-                self.upper.is_finite() && self.upper - self.lower <= width && !straddles_one
-            }
-        }
+        question.is_answered_by(&Bracket::new(self.lower, self.upper))
     }
 
     fn improve(&mut self, problem: &Problem<'_>, iterate: &Iterate, question: Question) {
