@@ -4,7 +4,7 @@
 use crate::spatial::{Twist, Vec3, Wrench};
 
 use super::assessment::{Assessment, Bracket, ConnectionState, LeftOut, Question, Verdict};
-use super::blocks::{Block, Link, Vertex, cut};
+use super::blocks::{Block, Blocks, Link, Vertex, cut};
 use super::closed_form::assess_bridge;
 use super::frame::LinkFrame;
 use super::loads::{BodyLoad, lump, own_loads};
@@ -44,6 +44,9 @@ pub(super) trait Knowledge {
 
     /// Takes note of the answer for a block with cycles.
     fn note(&mut self, block: &Block, part: &Part);
+
+    /// Takes note of all blocks, once all that are answered are noted.
+    fn close(&mut self, blocks: &[Block]);
 }
 
 /// Nothing, for a structure that is met for the first time.
@@ -55,11 +58,24 @@ impl Knowledge for Unknown {
     }
 
     fn note(&mut self, _: &Block, _: &Part) {}
+
+    fn close(&mut self, _: &[Block]) {}
 }
 
 /// Answers for a valid structure. What `knowledge` answers is not solved.
 pub(super) fn assess_with(structure: &Structure, question: Question, knowledge: &mut impl Knowledge) -> Assessment {
     let pieces = cut(structure);
+    let answer = assess_pieces(structure, &pieces, question, knowledge);
+    knowledge.close(&pieces.blocks);
+    answer
+}
+
+fn assess_pieces(
+    structure: &Structure,
+    pieces: &Blocks,
+    question: Question,
+    knowledge: &mut impl Knowledge,
+) -> Assessment {
     let loads = lump(structure, &pieces.blocks, own_loads(structure));
     let mut answer = Answer::new(structure, &pieces.blocks);
     for &root in &pieces.afloat {

@@ -203,7 +203,7 @@ impl Best {
             return false;
         }
         restore(structure, block, program, loads, iterate, &mut field, &idle);
-        let Some((upper, demands)) = problem.upper_bound(&field, self.unit_mechanism()) else { return false };
+        let Some((upper, demands)) = problem.upper_bound(&field, self.unit_mechanism(), 0.0) else { return false };
         if upper < self.upper {
             self.upper = upper;
             self.wrenches = field;

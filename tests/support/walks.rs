@@ -50,8 +50,13 @@ impl Walk {
                 for sign in [1.0, -1.0] {
                     let along = Vec3::ith(axis, sign);
                     let at = com + along * half;
-                    let taken = self.structure.connections.iter().any(|c| (c.frame.translation.vector - at).norm() < 1e-6)
-                        || self.structure.contacts.iter().any(|c| (c.position - com - along * half).norm() < half * 0.9);
+                    let taken =
+                        self.structure.connections.iter().any(|c| (c.frame.translation.vector - at).norm() < 1e-6)
+                            || self
+                                .structure
+                                .contacts
+                                .iter()
+                                .any(|c| (c.position - com - along * half).norm() < half * 0.9);
                     if !taken {
                         places.push((host, at, along));
                     }
@@ -114,12 +119,7 @@ impl Walk {
         } else if kind < 0.3 {
             let body = self.random.below(structure.bodies.len());
             let typical = structure.bodies[body].mass * 9.81;
-            let load = Load {
-                body,
-                force: self.random.vector() * (0.3 * typical),
-                torque: Vec3::zeros(),
-                at: None,
-            };
+            let load = Load { body, force: self.random.vector() * (0.3 * typical), torque: Vec3::zeros(), at: None };
             structure.loads = vec![load];
             Step::Shifted
         } else if kind < 0.3 + 0.7 * away.len() as f64 / 6.0 {
@@ -157,7 +157,9 @@ pub struct Neighbour {
 pub fn trusses() -> Vec<Walk> {
     let standing = |name, size: [usize; 3], seed| {
         let nodes = size.iter().product();
-        Walk::new(name, scenes::truss(size), seed).with_loose(0.15, 0.06, 0.0435, nodes).with_loose(0.15, 0.06, 0.0435, nodes)
+        Walk::new(name, scenes::truss(size), seed)
+            .with_loose(0.15, 0.06, 0.0435, nodes)
+            .with_loose(0.15, 0.06, 0.0435, nodes)
     };
     let clamped = |name, size: [usize; 3], seed| {
         let nodes: usize = size.iter().product();
@@ -194,7 +196,8 @@ const EDGE: f64 = 0.1;
 /// Five structures of cubes.
 pub fn cubes() -> Vec<Walk> {
     let half = EDGE / 2.0;
-    let patch = Model::Patch { friction: 0.4, points: vec![[half, half], [-half, half], [-half, -half], [half, -half]] };
+    let patch =
+        Model::Patch { friction: 0.4, points: vec![[half, half], [-half, half], [-half, -half], [half, -half]] };
     let cone = Model::Cone { friction: [0.6, 0.6], radius: [0.04, 0.04, 0.03] };
     let latch = Model::Box {
         shear: [100.0, 100.0],

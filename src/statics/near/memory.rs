@@ -8,14 +8,14 @@ use super::super::assessment::Bracket;
 use super::super::structure::{Anchor, Structure};
 use super::super::validate::InvalidStructure;
 
-/// How far a link or a body's centre of mass may have moved and still be the same
-/// one, as a share of the distance between them: data that were computed anew.
-const MOVED: f64 = 1e-6;
+/// How far a body or link may be from where it was and still count as there,
+/// relative to its distance from the origin: positions that were computed anew.
+const MOVED: f64 = 1e-9;
 
 /// What a state near an assessed one can use of its answer.
 ///
-/// A few vectors per body, connection and contact; it can be cloned, sent to other threads and
-/// used for any number of neighbours.
+/// A few vectors per body, connection and contact. Plain owned data: it can be cloned, sent to
+/// other threads, and used for any number of neighbours.
 #[derive(Clone, Debug)]
 pub struct Memory {
     pub(super) utilisation: Bracket,
@@ -27,8 +27,8 @@ pub struct Memory {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Known {
     pub com: Vec3,
-    /// Twist of its centre of mass in W in the mechanism of its block, carried
-    /// along by that of the block it hangs from.
+    /// Twist of its centre of mass in W: in the mechanism of its block, carried
+    /// along by the mechanism of the block that this one hangs from.
     pub twist: Twist,
 }
 
@@ -46,7 +46,7 @@ pub(super) struct Held {
 /// Why a structure could not be assessed as a neighbour.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum NotNear {
-    /// The structure is not sound.
+    /// The structure cannot be assessed at all.
     Structure(Vec<InvalidStructure>),
     /// The matching has not one entry per body of the structure.
     Length {
@@ -77,7 +77,7 @@ impl std::fmt::Display for NotNear {
                 write!(f, "the matching has {entries} entries for {bodies} bodies")
             }
             Self::NoSuchBody { body, entry, remembered } => {
-                write!(f, "matching[{body}] is {entry}, the remembered structure has {remembered} bodies")
+                write!(f, "matching[{body}] is {entry}, but the remembered structure has {remembered} bodies")
             }
         }
     }
@@ -86,7 +86,7 @@ impl std::fmt::Display for NotNear {
 impl std::error::Error for NotNear {}
 
 /// Every connection, then every contact, carrying nothing.
-pub(super) fn links(structure: &Structure) -> Vec<Held> {
+pub(super) fn idle_links(structure: &Structure) -> Vec<Held> {
     let connections = structure.connections.iter().map(|connection| Held {
         ends: [connection.parent, connection.child],
         connector: Some(connection.connector),
@@ -100,6 +100,10 @@ pub(super) fn links(structure: &Structure) -> Vec<Held> {
         wrench: Wrench::ZERO,
     });
     connections.chain(contacts).collect()
+}
+
+fn still_there(before: &Vec3, now: &Vec3) -> bool {
+    (before - now).norm_squared() <= MOVED * MOVED * now.norm_squared()
 }
 
 impl Memory {
@@ -116,48 +120,51 @@ impl Memory {
         wrong.map_or(Ok(()), Err)
     }
 
-    /// The twist of every body that is still where it was.
+    /// The twist of every body that is where it was.
     pub(super) fn twists(&self, structure: &Structure, matching: &[Option<usize>]) -> Vec<Option<Twist>> {
         let bodies = structure.bodies.iter().zip(matching);
         bodies
-            .map(|(body, known)| {
-                let known = &self.bodies[(*known)?];
-                (body.com == known.com).then_some(known.twist)
+            .map(|(body, entry)| {
+                let known = &self.bodies[(*entry)?];
+                still_there(&known.com, &body.com).then_some(known.twist)
             })
             .collect()
     }
 
-    /// Gives every link of `links` the wrench that it carried, if it was there.
-    pub(super) fn recall(&self, links: &mut [Held], matching: &[Option<usize>]) {
+    /// The links of `structure`, each with what it carried if it was there.
+    pub(super) fn links(&self, structure: &Structure, matching: &[Option<usize>]) -> Vec<Held> {
+        let mut links = idle_links(structure);
         let known = |anchor: Anchor| match anchor {
             Anchor::World => Some(Anchor::World),
             Anchor::Body(body) => matching[body].map(Anchor::Body),
         };
-        // Mostly the next link is the next one there too.
+        // Mostly the next one here is the next, or the next but one, there.
         let mut next = 0;
-        let mut index: Option<HashMap<([Anchor; 2], Option<usize>), Vec<usize>>> = None;
-        for link in links {
+        let mut by_ends = None;
+        for link in &mut links {
             let [Some(a), Some(b)] = link.ends.map(known) else { continue };
-            let same = |old: &Held| {
-                old.ends == [a, b]
-                    && old.connector == link.connector
-                    && (old.at - link.at).norm() <= MOVED * (1e-3 + link.at.norm())
+            let same = |i: &usize| {
+                let before = &self.links[*i];
+                before.ends == [a, b] && before.connector == link.connector && still_there(&before.at, &link.at)
             };
-            let close = (next..self.links.len().min(next + 3)).find(|&i| same(&self.links[i]));
-            let found = close.or_else(|| {
-                let index = index.get_or_insert_with(|| {
-                    let mut index: HashMap<_, Vec<usize>> = HashMap::new();
-                    for (i, old) in self.links.iter().enumerate() {
-                        index.entry((old.ends, old.connector)).or_default().push(i);
-                    }
-                    index
-                });
-                index.get(&([a, b], link.connector))?.iter().copied().find(|&i| same(&self.links[i]))
+            let in_turn = (next..self.links.len().min(next + 2)).find(same);
+            let found = in_turn.or_else(|| {
+                let by_ends = by_ends.get_or_insert_with(|| self.by_ends());
+                by_ends.get(&[a, b])?.iter().copied().find(same)
             });
             if let Some(i) = found {
                 link.wrench = self.links[i].wrench;
                 next = i + 1;
             }
         }
+        links
+    }
+
+    fn by_ends(&self) -> HashMap<[Anchor; 2], Vec<usize>> {
+        let mut index: HashMap<_, Vec<usize>> = HashMap::with_capacity(self.links.len());
+        for (i, link) in self.links.iter().enumerate() {
+            index.entry(link.ends).or_default().push(i);
+        }
+        index
     }
 }

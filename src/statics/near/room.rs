@@ -1,137 +1,175 @@
-//! How freely a link's wrench may move inside its cone.
+//! How freely the wrenches of a block's links may move inside their cones.
 //!
-//! The Hessian of the cone's logarithmic barrier at a wrench is the inverse of
-//! `C C'`, with one column of C per variable: what is near its limit moves least.
-//! Only a metric, nothing is proved with it: a wrench outside the cone is
-//! treated as one near its axis.
+//! The Hessian of a cone's logarithmic barrier at a wrench is the inverse of
+//! `C C'`, with one column of C per variable of the cone: what is near its limit
+//! moves least. Only a metric, nothing is proved with it, so a wrench outside its
+//! cone is taken to be just inside, and a face's points share its wrench as they
+//! would if they were springs.
+//!
+//! Source: Nesterov and Todd (1997); the quadratic representation of a
+//! second-order cone, as in `second_order`.
 
 use crate::spatial::{Vec3, Wrench};
 
 use super::super::blocks::Link;
+use super::super::bracket::Problem;
 use super::super::connector::{Connector, Model};
-use super::super::structure::Structure;
+use super::super::program::local_body;
+use super::super::second_order::norm;
+use super::super::spread::Spread;
 
-/// Depth inside the cone that every wrench is taken to have at least, as a share
-/// of what presses or holds there.
+/// Depth inside the cone that every wrench is taken to have at least, relative to
+/// what presses or holds there.
 const DEPTH: f64 = 1e-3;
 
-/// Room of a component without limits, as a multiple of the typical force.
+/// Room of what is not limited, and of a locked link, relative to the typical force.
 const UNLIMITED: f64 = 1e3;
 
-/// The columns of C, as wrenches in the link's frame.
-pub(super) type Columns = Vec<Wrench>;
-
-/// Room around `wrench` of a link at which strengths are `level` times the rated
-/// ones. `force` is the typical force through the link, `lever` its distance
-/// from its bodies' centres of mass.
-pub(super) fn room(
-    structure: &Structure,
-    link: Link,
-    wrench: &Wrench,
-    level: f64,
-    force: f64,
-    lever: f64,
-) -> Columns {
-    let mut columns = Vec::with_capacity(6);
-    match link {
-        Link::Contact(i) => {
-            let friction = structure.contacts[i].friction;
-            point(&mut columns, &wrench.force, friction, &Vec3::zeros(), DEPTH * force);
-        }
-        Link::Connection(i) => {
-            let connector = &structure.connectors[structure.connections[i].connector];
-            connection(&mut columns, connector, wrench, level, force, lever);
-        }
-    }
-    columns
+/// Room of all links of a block at one field.
+#[derive(Default)]
+pub(super) struct Rooms {
+    /// The columns of C of all links, as wrenches in the links' frames.
+    pub columns: Vec<Wrench>,
+    /// Index of each link's first column, and the number of columns.
+    pub first: Vec<usize>,
+    /// Per link: the step towards the middle of its cone that the barrier asks for.
+    pub centres: Vec<Wrench>,
 }
 
-fn connection(columns: &mut Columns, connector: &Connector, wrench: &Wrench, level: f64, force: f64, lever: f64) {
-    let Wrench { force: f, torque: m } = wrench;
-    let held = level * connector.strength;
-    match &connector.model {
-        Model::Cone { friction: [a, b], radius: [c, d, e] } => {
-            let units = [1.0, *a, *b, *c, *d, *e];
-            let z = [held + f.z, f.x / a, f.y / b, m.x / c, m.y / d, m.z / e];
-            let root = square_root(&z, DEPTH * (held + force));
-            for column in quadratic(&root) {
-                let v: [f64; 6] = std::array::from_fn(|k| column[k] * units[k]);
-                columns.push(Wrench::new(Vec3::new(v[1], v[2], v[0]), Vec3::new(v[3], v[4], v[5])));
-            }
+impl Rooms {
+    /// At `field`, with strengths `level` times the rated ones.
+    pub(super) fn new(problem: &Problem<'_>, field: &[Wrench], level: f64) -> Self {
+        Self::locking(problem, field, level, |_| false)
+    }
+
+    /// As `new`, but without resistance of some links to changes of their wrench:
+    /// for twists, whose stiffness this is, they are locked.
+    pub(super) fn locking(problem: &Problem<'_>, field: &[Wrench], level: f64, locked: impl Fn(usize) -> bool) -> Self {
+        let Problem { structure, block, program, .. } = *problem;
+        let mut rooms = Self::default();
+        for (l, (&link, wrench)) in block.links.iter().zip(field).enumerate() {
+            let force = program.scales.link[l];
+            let sides = program.frames[l].sides().into_iter().filter_map(|(side, _)| local_body(block, side));
+            let lever = sides.map(|i| program.scales.lever[i]).fold(0.0, f64::max);
+            rooms.first.push(rooms.columns.len());
+            let centre = match link {
+                Link::Contact(_) if locked(l) => rooms.lock(3, force, lever),
+                Link::Contact(i) => {
+                    let friction = structure.contacts[i].friction;
+                    rooms.add_point(&wrench.force, friction, &Vec3::zeros(), DEPTH * force)
+                }
+                Link::Connection(i) => {
+                    let connector = &structure.connectors[structure.connections[i].connector];
+                    if locked(l) {
+                        rooms.lock(6, force + level * connector.strength, lever)
+                    } else {
+                        rooms.add_connection(connector, wrench, level, force, lever)
+                    }
+                }
+            };
+            rooms.centres.push(centre);
         }
-        Model::Box { shear, tension, compression, bending, torsion } => {
-            let components = [
-                (f.x, shear[0], shear[0]),
-                (f.y, shear[1], shear[1]),
-                (f.z, *tension, *compression),
-                (m.x, bending[0], bending[0]),
-                (m.y, bending[1], bending[1]),
-                (m.z, *torsion, *torsion),
-            ];
-            for (k, (value, negative, positive)) in components.into_iter().enumerate() {
-                let typical = if k < 3 { force } else { force * lever };
-                let slack = |limit: f64, towards: f64| {
-                    if limit.is_finite() { (level * limit + towards).max(DEPTH * level * limit) } else { f64::INFINITY }
-                };
-                let (p, q) = (slack(negative, value), slack(positive, -value));
-                // Harmonic in the squares: the smaller one rules.
-                let room = (p.powi(-2) + q.powi(-2)).powf(-0.5).min(UNLIMITED * typical);
-                let axis = Vec3::ith(k % 3, room);
-                columns.push(if k < 3 {
-                    Wrench::new(axis, Vec3::zeros())
-                } else {
-                    Wrench::new(Vec3::zeros(), axis)
-                });
-            }
+        rooms.first.push(rooms.columns.len());
+        rooms
+    }
+
+    fn lock(&mut self, components: usize, force: f64, lever: f64) -> Wrench {
+        for k in 0..components {
+            self.columns.push(component(k, UNLIMITED * force * if k < 3 { 1.0 } else { lever }));
         }
-        Model::Patch { friction, points } => {
-            for (p, force) in points.iter().zip(super::carry::pressures(wrench, held, points)) {
-                let at = Vec3::new(p[0], p[1], 0.0);
-                let share = force.z / (held + f.z).max(DEPTH * held);
-                let shear = Vec3::new(f.x * share, f.y * share, force.z);
-                point(columns, &shear, *friction, &at, DEPTH * held);
+        Wrench::ZERO
+    }
+
+    fn add_connection(&mut self, connector: &Connector, wrench: &Wrench, level: f64, force: f64, lever: f64) -> Wrench {
+        let Wrench { force: f, torque: m } = wrench;
+        let held = level * connector.strength;
+        match &connector.model {
+            Model::Cone { friction: [a, b], radius: [c, d, e] } => {
+                let z = [held + f.z, f.x / a, f.y / b, m.x / c, m.y / d, m.z / e];
+                let columns = columns(&z, DEPTH * (held + force));
+                let wrenches = columns
+                    .map(|v| Wrench::new(Vec3::new(v[1] * a, v[2] * b, v[0]), Vec3::new(v[3] * c, v[4] * d, v[5] * e)));
+                self.columns.extend(wrenches);
+                wrenches[0]
+            }
+            Model::Box { shear, tension, compression, bending, torsion } => {
+                let components = [
+                    (f.x, shear[0], shear[0]),
+                    (f.y, shear[1], shear[1]),
+                    (f.z, *tension, *compression),
+                    (m.x, bending[0], bending[0]),
+                    (m.y, bending[1], bending[1]),
+                    (m.z, *torsion, *torsion),
+                ];
+                let mut centre = Wrench::ZERO;
+                for (k, (value, negative, positive)) in components.into_iter().enumerate() {
+                    let typical = UNLIMITED * force * if k < 3 { 1.0 } else { lever };
+                    let slack = |limit: f64, towards: f64| (level * limit + towards).max(DEPTH * level * limit);
+                    let (p, q) = (slack(negative, value), slack(positive, -value));
+                    // 1 / room^2 = 1 / p^2 + 1 / q^2, the second derivative of -log p - log q.
+                    let room = (p.powi(-2) + q.powi(-2)).powf(-0.5).min(typical);
+                    self.columns.push(component(k, room));
+                    if room > 0.0 {
+                        centre += component(k, room * room * (1.0 / p - 1.0 / q));
+                    }
+                }
+                centre
+            }
+            Model::Patch { friction, points } => {
+                let mut centre = Wrench::ZERO;
+                let spread = Spread::new(points);
+                let total = (held + f.z).max(DEPTH * held);
+                for p in points {
+                    let at = Vec3::new(p[0], p[1], 0.0);
+                    let pressed = spread.force(p, &Wrench::new(Vec3::new(f.x, f.y, total), *m));
+                    centre += self.add_point(&pressed, *friction, &at, DEPTH * held);
+                }
+                centre
             }
         }
     }
-}
 
-/// Room of a force in a friction cone at a point of the link's frame.
-fn point(columns: &mut Columns, force: &Vec3, friction: f64, at: &Vec3, depth: f64) {
-    if friction > 0.0 {
-        let z = [force.z, force.x / friction, force.y / friction];
-        let root = square_root(&z, depth);
-        for [normal, x, y] in quadratic(&root) {
-            let force = Vec3::new(x * friction, y * friction, normal);
-            columns.push(Wrench::new(force, at.cross(&force)));
+    /// Room of a force in a friction cone at a point of the link's frame.
+    fn add_point(&mut self, force: &Vec3, friction: f64, at: &Vec3, depth: f64) -> Wrench {
+        let first = self.columns.len();
+        if friction > 0.0 {
+            let z = [force.z, force.x / friction, force.y / friction];
+            for [normal, x, y] in columns(&z, depth) {
+                let force = Vec3::new(x * friction, y * friction, normal);
+                self.columns.push(Wrench::new(force, at.cross(&force)));
+            }
+        } else {
+            let force = Vec3::z() * force.z.max(depth);
+            self.columns.push(Wrench::new(force, at.cross(&force)));
         }
-    } else {
-        let force = Vec3::z() * force.z.max(depth);
-        columns.push(Wrench::new(force, at.cross(&force)));
+        self.columns[first]
     }
 }
 
-/// The Jordan square root of `z`, with `depth` added to its head where it is not
-/// that far inside the cone.
-fn square_root<const N: usize>(z: &[f64; N], depth: f64) -> [f64; N] {
-    let tail = z[1..].iter().map(|x| x * x).sum::<f64>().sqrt();
+fn component(k: usize, value: f64) -> Wrench {
+    let axis = Vec3::ith(k % 3, value);
+    if k < 3 { Wrench::new(axis, Vec3::zeros()) } else { Wrench::new(Vec3::zeros(), axis) }
+}
+
+/// The symmetric square root of the quadratic representation of `z`, its first
+/// column `z` itself; of a point `depth` inside where `z` is not that far inside.
+fn columns<const N: usize>(z: &[f64; N], depth: f64) -> [[f64; N]; N] {
+    let tail = norm(&z[1..]);
     let head = z[0].max(tail + depth.max(f64::MIN_POSITIVE));
     let (large, small) = ((head + tail).sqrt(), (head - tail).sqrt());
     let along = if tail > 0.0 { (large - small) / (2.0 * tail) } else { 0.0 };
-    std::array::from_fn(|k| if k == 0 { (large + small) / 2.0 } else { z[k] * along })
-}
-
-/// Rows of the quadratic representation `2 z z' - det(z) J`, a symmetric matrix.
-fn quadratic<const N: usize>(z: &[f64; N]) -> [[f64; N]; N] {
-    let tail: f64 = z[1..].iter().map(|x| x * x).sum();
-    let determinant = z[0] * z[0] - tail;
+    let root: [f64; N] = std::array::from_fn(|k| if k == 0 { (large + small) / 2.0 } else { z[k] * along });
+    let determinant = large * small;
     std::array::from_fn(|i| {
         std::array::from_fn(|j| {
-            let unit = match (i == j, i) {
-                (false, _) => 0.0,
-                (true, 0) => determinant,
-                (true, _) => -determinant,
+            let unit = if i != j {
+                0.0
+            } else if i == 0 {
+                determinant
+            } else {
+                -determinant
             };
-            2.0 * z[i] * z[j] - unit
+            2.0 * root[i] * root[j] - unit
         })
     })
 }
