@@ -178,3 +178,90 @@ fn twists(problem: &Problem<'_>, v: &[f64]) -> Vec<Twist> {
     };
     problem.program.scales.lever.iter().enumerate().map(twist).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::opening::{inadmissible, open};
+    use super::*;
+    use crate::spatial::Pose;
+    use crate::statics::blocks::{Block, cut};
+    use crate::statics::connector::{Connector, Model};
+    use crate::statics::loads::{BodyLoad, own_loads};
+    use crate::statics::program::Program;
+    use crate::statics::structure::{Anchor, Body, Connection, Structure};
+
+    /// Four cubes of 0.1 m on top of each other's sides, a ring that stands on the world.
+    fn ring() -> Structure {
+        let mut ring = Structure { gravity: Vec3::new(0.5, 0.2, -9.81), ..Structure::default() };
+        let model = Model::Cone { friction: [0.5, 0.4], radius: [0.03, 0.03, 0.04] };
+        ring.connectors.push(Connector { name: "c".to_owned(), strength: 20.0, model });
+        for [x, z] in [[0.0, 0.1], [0.1, 0.1], [0.0, 0.2], [0.1, 0.2]] {
+            ring.bodies.push(Body { mass: 0.3, com: Vec3::new(x, 0.0, z), fixed: false });
+        }
+        let sideways = crate::spatial::Rotation::from_axis_angle(&Vec3::y_axis(), std::f64::consts::FRAC_PI_2);
+        let upwards = crate::spatial::Rotation::identity();
+        let mut join = |parent, child, at: [f64; 2], rotation| {
+            let frame = Pose::from_parts(Vec3::new(at[0], 0.0, at[1]).into(), rotation);
+            ring.connections.push(Connection { parent, child: Anchor::Body(child), connector: 0, frame });
+        };
+        join(Anchor::Body(0), 1, [0.05, 0.1], sideways);
+        join(Anchor::Body(2), 3, [0.05, 0.2], sideways);
+        join(Anchor::Body(0), 2, [0.0, 0.15], upwards);
+        join(Anchor::Body(1), 3, [0.1, 0.15], upwards);
+        join(Anchor::World, 0, [0.0, 0.05], upwards);
+        join(Anchor::World, 1, [0.1, 0.05], upwards);
+        ring
+    }
+
+    fn with_problem(check: impl Fn(&Problem<'_>)) {
+        let structure = ring();
+        let pieces = cut(&structure);
+        let (block, loads): (&Block, Vec<BodyLoad>) = (&pieces.blocks[0], own_loads(&structure));
+        let program = Program::unstated(&structure, block, &loads, 1e-9);
+        check(&Problem { structure: &structure, block, loads: &loads, program: &program });
+    }
+
+    #[test]
+    fn fields_balance_afterwards_with_or_without_centring() {
+        with_problem(|problem| {
+            for centring in [0.0, 0.7] {
+                let mut field = vec![Wrench::ZERO; problem.block.links.len()];
+                let mut give = Give::new(problem, Rooms::new(problem, &field, 1.0));
+                give.balance(problem, &mut field, centring);
+                assert!(balances(problem, &lacking(problem, &field)));
+                // Another room, the same pattern.
+                give.renew(problem, Rooms::new(problem, &field, 0.5));
+                field[2] = Wrench::ZERO;
+                give.balance(problem, &mut field, centring);
+                assert!(balances(problem, &lacking(problem, &field)));
+            }
+        });
+    }
+
+    #[test]
+    fn the_loads_do_work_in_the_way_they_would_win() {
+        with_problem(|problem| {
+            let mut field = vec![Wrench::ZERO; problem.block.links.len()];
+            let way = Give::new(problem, Rooms::new(problem, &field, 1.0)).balance(problem, &mut field, 0.0);
+            let power: f64 = way.iter().zip(problem.loads).map(|(twist, load)| twist.power(&load.wrench)).sum();
+            assert!(power > 0.0);
+        });
+    }
+
+    #[test]
+    fn locked_links_hardly_move_and_opening_does_the_rest() {
+        with_problem(|problem| {
+            // Two cubes go sideways: links between them and the others slip.
+            let slide = Twist::new(Vec3::x(), Vec3::zeros());
+            let twists = [Twist::ZERO, slide, Twist::ZERO, slide];
+            let locked = inadmissible(problem, &twists);
+            assert_eq!(locked, [false, false, false, false, false, true]);
+            let field = vec![Wrench::ZERO; locked.len()];
+            let give = Give::new(problem, Rooms::locking(problem, &field, 1.0, |l| locked[l]));
+            let mut twists = give.lock(problem, &twists, &locked);
+            assert!(twists[1].linear.norm() < 1e-3, "{twists:?}");
+            assert!(open(problem, &mut twists));
+            assert!(!inadmissible(problem, &twists).contains(&true));
+        });
+    }
+}

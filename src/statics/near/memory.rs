@@ -168,3 +168,89 @@ impl Memory {
         index
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::spatial::Pose;
+    use crate::statics::structure::{Body, Connection, Contact};
+
+    /// Three bodies in a row, joined by two connections at each of two places, and
+    /// two contacts.
+    fn row() -> Structure {
+        let mut row = Structure::default();
+        for x in 0..3 {
+            row.bodies.push(Body { mass: 1.0, com: Vec3::new(f64::from(x), 0.0, 1.0), fixed: false });
+        }
+        for (parent, child) in [(0, 1), (1, 2)] {
+            for y in [-0.1, 0.1] {
+                let frame = Pose::translation(parent as f64 + 0.5, y, 1.0);
+                let (parent, child) = (Anchor::Body(parent), Anchor::Body(child));
+                row.connections.push(Connection { parent, child, connector: 0, frame });
+            }
+        }
+        for x in [-0.1, 0.1] {
+            let position = Vec3::new(x, 0.0, 0.5);
+            let (against, normal) = (Anchor::World, Vec3::z());
+            row.contacts.push(Contact { body: 0, against, position, normal, friction: 0.5 });
+        }
+        row
+    }
+
+    /// A memory in which link `i` carries `i + 1` newtons and body `i` moves at `i + 1` m/s.
+    fn memory(structure: &Structure) -> Memory {
+        let mut links = idle_links(structure);
+        for (i, link) in links.iter_mut().enumerate() {
+            link.wrench.force.x = (i + 1) as f64;
+        }
+        let bodies = structure.bodies.iter().enumerate();
+        let known = |(i, body): (usize, &Body)| Known {
+            com: body.com,
+            twist: Twist::new(Vec3::x() * (i + 1) as f64, Vec3::zeros()),
+        };
+        Memory { utilisation: Bracket::exact(0.5), bodies: bodies.map(known).collect(), links }
+    }
+
+    fn carried(memory: &Memory, structure: &Structure, matching: &[Option<usize>]) -> Vec<f64> {
+        memory.links(structure, matching).iter().map(|link| link.wrench.force.x).collect()
+    }
+
+    #[test]
+    fn links_are_found_wherever_they_went_in_the_list() {
+        let before = row();
+        let memory = memory(&before);
+        let same = [Some(0), Some(1), Some(2)];
+        assert_eq!(carried(&memory, &before, &same), [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
+        let mut now = before.clone();
+        now.connections.remove(1);
+        now.connections.reverse();
+        now.contacts.swap(0, 1);
+        assert_eq!(carried(&memory, &now, &same), [4.0, 3.0, 1.0, 6.0, 5.0]);
+    }
+
+    #[test]
+    fn links_of_other_bodies_places_or_connectors_carry_nothing() {
+        let before = row();
+        let memory = memory(&before);
+        assert_eq!(carried(&memory, &before, &[Some(0), None, Some(2)]), [0.0, 0.0, 0.0, 0.0, 5.0, 6.0]);
+        assert_eq!(carried(&memory, &before, &[Some(2), Some(1), Some(0)]), [0.0; 6]);
+        let mut now = before.clone();
+        now.connections[0].frame.translation.vector.y += 1e-6;
+        now.connections[1].connector = 1;
+        now.contacts[1].position.x *= 1.0 + 1e-15;
+        let same = [Some(0), Some(1), Some(2)];
+        assert_eq!(carried(&memory, &now, &same), [0.0, 0.0, 3.0, 4.0, 5.0, 6.0]);
+    }
+
+    #[test]
+    fn bodies_that_moved_have_no_twist() {
+        let before = row();
+        let mut now = before.clone();
+        now.bodies[1].com.z += 0.1;
+        let twists = memory(&before).twists(&now, &[Some(2), Some(1), None]);
+        assert!(twists.iter().all(Option::is_none));
+        let twists = memory(&before).twists(&now, &[Some(0), Some(1), Some(2)]);
+        let speeds: Vec<_> = twists.iter().map(|twist| twist.map(|t| t.linear.x)).collect();
+        assert_eq!(speeds, [Some(1.0), None, Some(3.0)]);
+    }
+}
