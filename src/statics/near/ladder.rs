@@ -116,7 +116,7 @@ impl<'p> Ladder<'p> {
             let rooms = Rooms::new(&self.problem, &field, level);
             let give = match &mut give {
                 Some(give) => {
-                    give.renew(&self.problem, rooms);
+                    give.renew(rooms);
                     give
                 }
                 None => give.insert(Give::new(&self.problem, rooms)),

@@ -9,6 +9,8 @@
 //! Source: Nesterov and Todd (1997); the quadratic representation of a
 //! second-order cone, as in `second_order`.
 
+use nalgebra::{Matrix6, Vector6};
+
 use crate::spatial::{Vec3, Wrench};
 
 use super::super::blocks::Link;
@@ -28,10 +30,8 @@ const UNLIMITED: f64 = 1e3;
 /// Room of all links of a block at one field.
 #[derive(Default)]
 pub(super) struct Rooms {
-    /// The columns of C of all links, as wrenches in the links' frames.
-    pub columns: Vec<Wrench>,
-    /// Index of each link's first column, and the number of columns.
-    pub first: Vec<usize>,
+    /// `C C'` of each link, on wrenches in its frame.
+    pub metrics: Vec<Matrix6<f64>>,
     /// Per link: the step towards the middle of its cone that the barrier asks for.
     pub centres: Vec<Wrench>,
 }
@@ -51,7 +51,7 @@ impl Rooms {
             let force = program.scales.link[l];
             let sides = program.frames[l].sides().into_iter().filter_map(|(side, _)| local_body(block, side));
             let lever = sides.map(|i| program.scales.lever[i]).fold(0.0, f64::max);
-            rooms.first.push(rooms.columns.len());
+            rooms.metrics.push(Matrix6::zeros());
             let centre = match link {
                 Link::Contact(_) if locked(l) => rooms.lock(3, force, lever),
                 Link::Contact(i) => {
@@ -69,13 +69,21 @@ impl Rooms {
             };
             rooms.centres.push(centre);
         }
-        rooms.first.push(rooms.columns.len());
         rooms
+    }
+
+    /// Adds a column of C to the metric of the last link.
+    fn push(&mut self, column: &Wrench) {
+        let Wrench { force: f, torque: m } = column;
+        let column = Vector6::new(f.x, f.y, f.z, m.x, m.y, m.z);
+        if let Some(metric) = self.metrics.last_mut() {
+            metric.ger(1.0, &column, &column, 1.0);
+        }
     }
 
     fn lock(&mut self, components: usize, force: f64, lever: f64) -> Wrench {
         for k in 0..components {
-            self.columns.push(component(k, UNLIMITED * force * if k < 3 { 1.0 } else { lever }));
+            self.push(&component(k, UNLIMITED * force * if k < 3 { 1.0 } else { lever }));
         }
         Wrench::ZERO
     }
@@ -89,7 +97,9 @@ impl Rooms {
                 let columns = columns(&z, DEPTH * (held + force));
                 let wrenches = columns
                     .map(|v| Wrench::new(Vec3::new(v[1] * a, v[2] * b, v[0]), Vec3::new(v[3] * c, v[4] * d, v[5] * e)));
-                self.columns.extend(wrenches);
+                for column in &wrenches {
+                    self.push(column);
+                }
                 wrenches[0]
             }
             Model::Box { shear, tension, compression, bending, torsion } => {
@@ -108,7 +118,7 @@ impl Rooms {
                     let (p, q) = (slack(negative, value), slack(positive, -value));
                     // 1 / room^2 = 1 / p^2 + 1 / q^2, the second derivative of -log p - log q.
                     let room = (p.powi(-2) + q.powi(-2)).powf(-0.5).min(typical);
-                    self.columns.push(component(k, room));
+                    self.push(&component(k, room));
                     if room > 0.0 {
                         centre += component(k, room * room * (1.0 / p - 1.0 / q));
                     }
@@ -131,18 +141,20 @@ impl Rooms {
 
     /// Room of a force in a friction cone at a point of the link's frame.
     fn add_point(&mut self, force: &Vec3, friction: f64, at: &Vec3, depth: f64) -> Wrench {
-        let first = self.columns.len();
+        let at_origin = |force: Vec3| Wrench::new(force, at.cross(&force));
         if friction > 0.0 {
             let z = [force.z, force.x / friction, force.y / friction];
-            for [normal, x, y] in columns(&z, depth) {
-                let force = Vec3::new(x * friction, y * friction, normal);
-                self.columns.push(Wrench::new(force, at.cross(&force)));
+            let columns = columns(&z, depth);
+            let columns = columns.map(|[normal, x, y]| at_origin(Vec3::new(x * friction, y * friction, normal)));
+            for column in &columns {
+                self.push(column);
             }
+            columns[0]
         } else {
-            let force = Vec3::z() * force.z.max(depth);
-            self.columns.push(Wrench::new(force, at.cross(&force)));
+            let column = at_origin(Vec3::z() * force.z.max(depth));
+            self.push(&column);
+            column
         }
-        self.columns[first]
     }
 }
 
