@@ -139,6 +139,7 @@
 //! are checked on samples (at most 15 degrees or an eighth of a cell apart, refined
 //! around the worst), not between them. Only cubes in a lattice are planned for.
 
+pub mod certificate;
 pub mod geometry;
 pub mod io;
 pub mod reconfigure;

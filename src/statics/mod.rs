@@ -45,5 +45,6 @@ mod validate;
 pub use assess::assess;
 pub use assessment::{Assessment, Bracket, ConnectionState, LeftOut, Question, Verdict};
 pub use connector::{Connector, Model};
+pub use patch::face_forces;
 pub use structure::{Anchor, Body, Connection, Contact, Load, Structure};
 pub use validate::{InvalidStructure, validate};
