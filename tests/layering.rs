@@ -27,7 +27,17 @@ const HOMES: [(&str, &str); 6] = [
 
 /// What the checker of certificates may take from the oracle: plain data.
 const DATA: [&str; 11] = [
-    "Anchor", "Body", "Bracket", "Connection", "Connector", "Contact", "Load", "Model", "Structure", "Verdict", "statics",
+    "Anchor",
+    "Body",
+    "Bracket",
+    "Connection",
+    "Connector",
+    "Contact",
+    "Load",
+    "Model",
+    "Structure",
+    "Verdict",
+    "statics",
 ];
 
 fn rust_files(directory: &Path) -> Vec<PathBuf> {

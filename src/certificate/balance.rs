@@ -15,12 +15,18 @@ use super::{Carried, DATA, Stress};
 ///
 /// # Errors
 /// Every body that is out of balance, contact that slips and connection that gives.
-pub(super) fn upper_bound(structure: &Structure, stress: &Stress, allowance: &mut Allowance) -> Result<f64, Vec<Fault>> {
+pub(super) fn upper_bound(
+    structure: &Structure,
+    stress: &Stress,
+    allowance: &mut Allowance,
+) -> Result<f64, Vec<Fault>> {
     let mut faults = Vec::new();
     let sums = sums(structure, stress);
     for (body, sum) in sums.iter().enumerate() {
-        let (force, torque) = (sum.lacking.force.norm().upper, sum.lacking.torque.norm().upper);
-        if movable(structure, Anchor::Body(body)).is_some() && !(force <= DATA * sum.force && torque <= DATA * sum.torque) {
+        let (force, torque) = (sum.surplus.force.norm().upper, sum.surplus.torque.norm().upper);
+        if movable(structure, Anchor::Body(body)).is_some()
+            && !(force <= DATA * sum.force && torque <= DATA * sum.torque)
+        {
             let lacks = format!("lacks {force:e} N and {torque:e} N m of {:e} N and {:e} N m", sum.force, sum.torque);
             faults.push(Fault::Body { body, problem: lacks });
         }
@@ -70,8 +76,8 @@ pub(super) fn movable(structure: &Structure, anchor: Anchor) -> Option<usize> {
 
 /// All that acts on a body.
 pub(super) struct Sum {
-    /// What it lacks for balance, negated: the sum, about its centre of mass, in W.
-    pub lacking: Push,
+    /// The sum itself, about the centre of mass, in W: zero in balance.
+    pub surplus: Push,
     /// Sum of the sizes of all forces, in N.
     pub force: f64,
     /// Sum of the sizes of all torques and moments, in N m.
@@ -80,13 +86,13 @@ pub(super) struct Sum {
 
 /// What acts on each body; nothing on fixed ones.
 pub(super) fn sums(structure: &Structure, stress: &Stress) -> Vec<Sum> {
-    let nothing = || Sum { lacking: Push::ZERO, force: 0.0, torque: 0.0 };
+    let nothing = || Sum { surplus: Push::ZERO, force: 0.0, torque: 0.0 };
     let mut sums: Vec<Sum> = structure.bodies.iter().map(|_| nothing()).collect();
     let mut act = |anchor: Anchor, push: &Push, at: &Vec3| {
         if let Some(body) = movable(structure, anchor) {
             let moved = push.moved(&arm(structure, body, at));
             let sum = &mut sums[body];
-            sum.lacking = sum.lacking.plus(&moved);
+            sum.surplus = sum.surplus.plus(&moved);
             sum.force += push.force.norm().upper;
             let lever = (at - structure.bodies[body].com).norm();
             sum.torque += push.torque.norm().upper + lever * push.force.norm().upper;
@@ -208,7 +214,7 @@ fn loads(structure: &Structure) -> Vec<(f64, f64)> {
 
 /// A body, and the connection that holds it with the body behind that one; both
 /// `None` where no connection leads on to the ground, and the latter at the ground.
-type Branch = (usize, Option<(usize, Option<usize>)>);
+pub(super) type Branch = (usize, Option<(usize, Option<usize>)>);
 
 /// A forest of connections that can carry any wrench, each body after the one that
 /// holds it: strong connections first, since what they carry on top costs least.
@@ -252,7 +258,7 @@ pub(super) fn forest(structure: &Structure) -> Vec<Branch> {
 /// to carry on top, on its child in its frame, and what is left at the forest's roots
 /// that are not the ground.
 pub(super) fn carry(structure: &Structure, forest: &[Branch], sums: &[Sum]) -> (Vec<Push>, Vec<(usize, Push)>) {
-    let mut surplus: Vec<Push> = sums.iter().map(|sum| sum.lacking).collect();
+    let mut surplus: Vec<Push> = sums.iter().map(|sum| sum.surplus).collect();
     let mut rest = vec![Push::ZERO; structure.connections.len()];
     let mut left = Vec::new();
     for &(body, holder) in forest.iter().rev() {

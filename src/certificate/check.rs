@@ -4,11 +4,11 @@ use std::fmt;
 
 use crate::statics::{Bracket, Verdict};
 
+use super::Certificate;
 use super::balance::upper_bound;
 use super::models::Allowance;
 use super::motion::lower_bound;
 use super::sound::unsound;
-use super::Certificate;
 
 /// What a certificate proves.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -120,4 +120,3 @@ pub(super) fn follows(utilisation: Bracket) -> Option<Verdict> {
         _ => Verdict::Undecided,
     })
 }
-

@@ -99,12 +99,7 @@ impl Mul for Interval {
         if self == Self::ZERO || other == Self::ZERO {
             return Self::ZERO;
         }
-        hull([
-            self.lower * other.lower,
-            self.lower * other.upper,
-            self.upper * other.lower,
-            self.upper * other.upper,
-        ])
+        hull([self.lower * other.lower, self.lower * other.upper, self.upper * other.lower, self.upper * other.upper])
     }
 }
 
@@ -117,12 +112,7 @@ impl Div for Interval {
         if self == Self::ZERO {
             return Self::ZERO;
         }
-        hull([
-            self.lower / other.lower,
-            self.lower / other.upper,
-            self.upper / other.lower,
-            self.upper / other.upper,
-        ])
+        hull([self.lower / other.lower, self.lower / other.upper, self.upper / other.lower, self.upper / other.upper])
     }
 }
 
@@ -227,7 +217,8 @@ impl Axes {
         let [x, y, z, w] = [rotation.i, rotation.j, rotation.k, rotation.w].map(Interval::exact);
         let two = Interval::exact(2.0);
         let norm = x.square() + y.square() + z.square() + w.square();
-        let diagonal = |a: Interval, b: Interval, c: Interval| (w.square() + a.square() - b.square() - c.square()) / norm;
+        let diagonal =
+            |a: Interval, b: Interval, c: Interval| (w.square() + a.square() - b.square() - c.square()) / norm;
         let twice = |a: Interval, b: Interval| two * (a + b) / norm;
         Self([
             Vector { x: diagonal(x, y, z), y: twice(x * y, w * z), z: twice(x * z, -(w * y)) },

@@ -37,7 +37,7 @@ impl Push {
 pub(super) struct Motion {
     pub linear: Vector,
     pub angular: Vector,
-    /// Linear and angular speed, in m/s (as felt anywhere on the bodies) and rad/s.
+    /// Linear and angular speed, in m/s and rad/s, as felt anywhere on the bodies.
     pub speed: [f64; 2],
 }
 
@@ -239,7 +239,8 @@ pub(super) fn free(connector: &Connector, motion: &Motion, allowance: &mut Allow
         let forgiven = allowance.forgives(resisted, motion.speed[0]);
         return if forgiven { Ok(()) } else { Err(format!("resists at {resisted:e} m/s")) };
     }
-    let unlimited = limits(&connector.model).map(|both| both.map(|limit| if limit > 0.0 { f64::INFINITY } else { 0.0 }));
+    let unlimited =
+        limits(&connector.model).map(|both| both.map(|limit| if limit > 0.0 { f64::INFINITY } else { 0.0 }));
     against_limits(motion, &unlimited, allowance).map(drop)
 }
 

@@ -83,9 +83,10 @@ fn relative(structure: &Structure, mechanism: &Mechanism, pair: [Anchor; 2], at:
     let lever = Vector::exact(at) - Vector::exact(&mechanism.about);
     let linear = linear + angular.cross(&lever);
     let reach = [first, second].into_iter().flatten().map(|body| (at - structure.bodies[body].com).norm());
-    let turning = angular.norm().upper;
-    let speed = [linear.norm().upper + turning * reach.fold(0.0, f64::max), turning];
-    Some(Motion { linear, angular, speed })
+    let reach = reach.fold(0.0, f64::max);
+    // As felt anywhere on the bodies.
+    let speed = linear.norm().upper + angular.norm().upper * reach;
+    Some(Motion { linear, angular, speed: [speed, if reach > 0.0 { speed / reach } else { angular.norm().upper }] })
 }
 
 /// Power in W of gravity and the loads, and the size of its terms.

@@ -103,7 +103,7 @@ pub(super) fn least_normal_force(wrench: &Wrench, friction: f64, points: &[[f64;
 /// Forces in N at the points of a face, on the child, in the connection frame, that
 /// carry `wrench` with the least preload: up to rounding they add up to its shear,
 /// bending and torsion, and press with `f_z` or more, so that the preload is their total
-/// normal force less `f_z`. `spare` is the share of extra pressure, spread over all
+/// normal force less `f_z`. `spare` is an extra pressure in N, spread over all
 /// points, that keeps them inside their friction cones in spite of rounding.
 ///
 /// Directions that the face cannot hold at all are left out. `None` for a face without
@@ -135,7 +135,7 @@ pub fn face_forces(wrench: &Wrench, friction: f64, points: &[[f64; 2]], spare: f
     let pressure: f64 = program.pressure.iter().sum();
     let total = x.iter().map(|z| z[0]).sum::<f64>() + pressing * pressure;
     let lacking = (f.z / scale - total).max(0.0);
-    let more = pressing + (lacking + spare * total.max(f.z / scale)) / pressure;
+    let more = pressing + (lacking + spare / scale) / pressure;
     let force = |(z, b): (&[f64; 3], &f64)| {
         let grip = if friction > 0.0 { friction } else { 0.0 };
         Vec3::new(grip * z[1], grip * z[2], z[0] + more * b) * scale

@@ -7,9 +7,7 @@ use std::time::Instant;
 use std::{fs, io};
 
 use steadfast::certificate::issue;
-use steadfast::io::{
-    CertificateDocument, Checkable, NamedStructure, read_checkable, write_certificate, write_check,
-};
+use steadfast::io::{CertificateDocument, Checkable, NamedStructure, read_checkable, write_certificate, write_check};
 use steadfast::statics::{Assessment, Bracket, Question, Verdict, assess};
 
 use crate::arguments::CheckArguments;

@@ -36,9 +36,10 @@ impl fmt::Display for Uncertified {
 
 impl std::error::Error for Uncertified {}
 
-/// How much wider than the answer's a certified bracket may be, relative to the larger
-/// of the bound and 1: what preparing the fields may cost.
-const WIDER: f64 = 1e-9;
+/// How far a certified bracket may reach beyond the answer's at either end, relative to
+/// the larger of the bound and 1: what preparing the fields may cost, no more than the
+/// width to which the utilisation is usually asked for.
+const WIDER: f64 = 1e-7;
 
 /// Certifies an answer of the oracle on `structure`. The certificate's bracket is what
 /// the checker itself proves, wider than the answer's by rounding.
@@ -59,12 +60,12 @@ pub fn issue(structure: &Structure, answer: &Assessment) -> Result<Certificate, 
     }
     // Proofs for data that are meant up to 1e-12 may cross by as much.
     let utilisation = Bracket::new(lower.min(upper), upper.max(lower));
-    let room = |bound: f64| WIDER * bound.max(1.0);
+    let near = |proved: f64, wanted: f64| proved == wanted || (proved - wanted).abs() <= WIDER * wanted.max(1.0);
     let Some(verdict) = follows(utilisation).filter(|verdict| *verdict == answer.verdict) else {
         let problem = format!("[{lower}, {upper}] is proved, from which {:?} does not follow", answer.verdict);
         return Err(Uncertified { faults: vec![Fault::Claim(problem)] });
     };
-    if !(utilisation.lower >= wanted.lower - room(wanted.lower) && utilisation.upper <= wanted.upper + room(wanted.upper)) {
+    if !(near(utilisation.lower, wanted.lower) && near(utilisation.upper, wanted.upper)) {
         let problem = format!("[{lower}, {upper}] is proved of [{}, {}]", wanted.lower, wanted.upper);
         return Err(Uncertified { faults: vec![Fault::Claim(problem)] });
     }

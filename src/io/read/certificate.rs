@@ -42,9 +42,7 @@ pub(super) fn read(root: &Place<'_>, findings: &mut Findings) -> Option<Certific
 
 fn stress(wire: &wire::Stress) -> Stress {
     let carried = |wire: &wire::Carried| match wire {
-        wire::Carried::Wrench(wrench) => {
-            Carried::Wrench(Wrench::new(vector(wrench.force_n), vector(wrench.torque_nm)))
-        }
+        wire::Carried::Wrench(wrench) => Carried::Wrench(Wrench::new(vector(wrench.force_n), vector(wrench.torque_nm))),
         wire::Carried::Points(points) => Carried::Points {
             preload: points.preload_n.0,
             forces: points.forces_n.iter().copied().map(vector).collect(),
