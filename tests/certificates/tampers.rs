@@ -173,26 +173,33 @@ fn contact_changed(mut c: Certificate, random: &mut Random) -> Option<Certificat
     (amount > 0.0).then_some(c)
 }
 
+/// One body's motion changed so that a contact, a magnet or a face closes on it.
 fn twist_changed(mut c: Certificate, random: &mut Random) -> Option<Certificate> {
-    if c.verdict == Verdict::WholeBodyUnstable {
-        return None; // a collapse may be changed a little and remain one
+    let mechanism = c.mechanism.as_ref()?;
+    let connections = c
+        .structure
+        .connections
+        .iter()
+        .filter(|connection| !matches!(c.structure.connectors[connection.connector].model, Model::Box { .. }));
+    let connections =
+        connections.map(|l| (l.child, l.parent, l.frame.translation.vector, l.frame.rotation * Vec3::z()));
+    let contacts = c.structure.contacts.iter().map(|k| (Anchor::Body(k.body), k.against, k.position, k.normal));
+    let links: Vec<_> = connections.chain(contacts).collect();
+    let (first, second, at, away) = *links.get(random.below(links.len().max(1)))?;
+    let velocity = |anchor: Anchor| {
+        let twist = movable(&c, anchor).map_or(Twist::ZERO, |body| mechanism.twists[body]);
+        twist.at(&(at - mechanism.about))
+    };
+    let fastest = mechanism.twists.iter().map(|twist| twist.at(&(at - mechanism.about)).norm()).fold(0.0, f64::max);
+    let opening = (velocity(first) - velocity(second)).dot(&away).max(0.0);
+    let change = away * (opening + random.decade(1e-6, 1.0) * fastest);
+    let twists = &mut c.mechanism.as_mut()?.twists;
+    match (first, second) {
+        (Anchor::Body(body), _) if !c.structure.bodies[body].fixed => twists[body].linear -= change,
+        (_, Anchor::Body(body)) if !c.structure.bodies[body].fixed => twists[body].linear += change,
+        _ => return None,
     }
-    let (body, lever) = (weighty(&c, random)?, size(&c));
-    let moving = |a: Anchor| a == Anchor::Body(body);
-    let linked = c.structure.connections.iter().any(|l| moving(l.parent) || moving(l.child));
-    let about = c.mechanism.as_ref()?.about;
-    let speed = |twist: &Twist| twist.linear.norm() + twist.angular.norm() * lever;
-    let fastest = c.mechanism.as_ref()?.twists.iter().map(speed).fold(0.0, f64::max);
-    let change = random.vector().try_normalize(0.1)? * (random.decade(0.1, 1.0) * fastest);
-    let com = c.structure.bodies[body].com;
-    let twist = &mut c.mechanism.as_mut()?.twists[body];
-    if random.chance(0.5) {
-        twist.linear += change;
-    } else {
-        twist.angular += change / lever;
-        twist.linear -= (change / lever).cross(&(com - about));
-    }
-    (linked && fastest > 0.0).then_some(c)
+    (fastest > 0.0).then_some(c)
 }
 
 fn reversed(mut c: Certificate, _: &mut Random) -> Option<Certificate> {

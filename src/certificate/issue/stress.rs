@@ -13,6 +13,9 @@ use super::super::{Carried, Stress};
 /// in turn.
 const SPARE: [f64; 8] = [1e-15, 1e-14, 1e-13, 1e-12, 1e-11, 1e-10, 1e-9, 1e-8];
 
+/// Most iterations of a singular value decomposition of six rows; it needs about ten.
+const SWEEPS: usize = 200;
+
 /// Rounds of making bodies balance.
 const ROUNDS: usize = 3;
 
@@ -89,13 +92,20 @@ fn settle(structure: &Structure, forest: &[Branch], left: &[(usize, Push)], cont
         });
         let effects: Vec<Matrix6x3<f64>> = effects.collect();
         let most = touching[*part].iter().map(|(index, _)| contacts[*index].norm_squared()).fold(0.0, f64::max);
+        if !(most > 0.0 && most < f64::INFINITY) {
+            continue;
+        }
         let share = |index: usize| contacts[index].norm_squared() / most;
         let weights: Vec<f64> = touching[*part].iter().map(|(index, _)| share(*index)).collect();
         let metric = effects.iter().zip(&weights).map(|(effect, weight)| effect * effect.transpose() * *weight);
         let metric: Matrix6<f64> = metric.sum();
         let (force, torque) = (surplus.force.middle(), surplus.torque.middle() / lever);
         let wanted = Vector6::new(force.x, force.y, force.z, torque.x, torque.y, torque.z);
-        let Ok(pull) = metric.svd(true, true).solve(&wanted, 1e-12) else { continue };
+        if !metric.iter().chain(&wanted).all(|x| x.is_finite()) {
+            continue;
+        }
+        let Some(factors) = metric.try_svd(true, true, f64::EPSILON, SWEEPS) else { continue };
+        let Ok(pull) = factors.solve(&wanted, 1e-12) else { continue };
         for (((index, sign), effect), weight) in touching[*part].iter().zip(&effects).zip(&weights) {
             let change = effect.tr_mul(&pull) * (*weight * *sign);
             if change.iter().all(|x| x.is_finite()) {
