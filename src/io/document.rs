@@ -79,7 +79,7 @@ pub enum Checkable {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Verifiable {
     /// A plan with its problem.
-    Plan(PlanDocument),
+    Plan(Box<PlanDocument>),
     /// A certificate with its structure.
-    Certificate(CertificateDocument),
+    Certificate(Box<CertificateDocument>),
 }

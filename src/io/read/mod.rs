@@ -124,8 +124,8 @@ pub fn read_verifiable(file: &SourceFile) -> Result<Verifiable, Diagnostics> {
     let value = document.as_ref().and_then(|document| {
         let root = document.root();
         match decode::format_of(&root, &["plan", "certificate"], &mut findings)? {
-            "plan" => plan::read(&root, &mut findings).map(Verifiable::Plan),
-            _ => certificate::read(&root, &mut findings).map(Verifiable::Certificate),
+            "plan" => plan::read(&root, &mut findings).map(|plan| Verifiable::Plan(Box::new(plan))),
+            _ => certificate::read(&root, &mut findings).map(|found| Verifiable::Certificate(Box::new(found))),
         }
     });
     findings.finish(value)
