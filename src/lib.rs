@@ -42,9 +42,10 @@
 //! # Layers
 //!
 //! Each uses only what stands before it: [`spatial`] (poses, wrenches, twists),
-//! [`statics`] (the oracle), [`robot`] (module types, configurations), [`geometry`]
-//! (contacts and sweeps), [`reconfigure`] (actions, transient states, plans), [`io`]
-//! (files). The search engines are the package `planners`, which knows no robots.
+//! [`statics`] (the oracle), [`certificate`] (proofs of its answers and their checker),
+//! [`robot`] (module types, configurations), [`geometry`] (contacts and sweeps),
+//! [`reconfigure`] (actions, transient states, plans), [`io`] (files). The search
+//! engines are the package `planners`, which knows no robots.
 //!
 //! # Asking the oracle
 //!
