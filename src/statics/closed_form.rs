@@ -47,6 +47,7 @@ pub(super) fn assess_bridge(structure: &Structure, block: &Block, loads: &[BodyL
                 shares: vec![if critical { 1.0 } else { 0.0 }],
                 undecided_because: None,
                 decided_by: Rung::ClosedForm,
+                unproved: None,
             }
         }
         Link::Contact(i) => {
@@ -63,6 +64,7 @@ pub(super) fn assess_bridge(structure: &Structure, block: &Block, loads: &[BodyL
                 shares: vec![0.0],
                 undecided_because: None,
                 decided_by: Rung::ClosedForm,
+                unproved: None,
             }
         }
     }
