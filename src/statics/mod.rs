@@ -40,6 +40,7 @@ mod respect;
 mod rung;
 mod scales;
 mod second_order;
+mod series;
 mod solve_block;
 mod spread;
 mod stiffness;
