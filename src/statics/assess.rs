@@ -231,7 +231,16 @@ impl<'s> Answer<'s> {
                 self.collapsed = true;
                 self.moving = Some((index, mechanism));
             }
-            Part::Stands { utilisation, wrenches, demands, mechanism, shares, undecided_because, decided_by } => {
+            Part::Stands {
+                utilisation,
+                wrenches,
+                demands,
+                mechanism,
+                shares,
+                undecided_because,
+                decided_by,
+                unproved: _,
+            } => {
                 self.decided_by = self.decided_by.max(decided_by);
                 for ((&link, wrench), demand) in self.blocks[index].links.iter().zip(&wrenches).zip(demands) {
                     match link {
