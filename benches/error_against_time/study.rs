@@ -1,0 +1,102 @@
+//! Error against time: every method with every setting on every scene.
+
+use std::time::{Duration, Instant};
+
+use crate::cone_program::Cone;
+use crate::methods::{Answer, Claim, Method};
+use crate::pyramid::Side;
+use crate::scenes::Scene;
+use crate::standard;
+use crate::timing::medians;
+
+/// What one method with one setting did on one scene.
+pub struct Row {
+    pub family: &'static str,
+    pub scene: String,
+    pub bodies: usize,
+    pub method: Method,
+    pub answer: Answer,
+    pub reference: f64,
+    pub uncertainty: f64,
+    /// Largest distance of the answer from the reference; `None` without a finite answer.
+    pub error: Option<f64>,
+    /// Median time.
+    pub milliseconds: f64,
+    pub runs: usize,
+}
+
+/// How long to measure.
+#[derive(Clone, Copy)]
+pub struct Effort {
+    /// Time for one method with one setting on one scene.
+    pub budget: Duration,
+    /// Most repetitions.
+    pub most: usize,
+}
+
+/// Answers first, checked against the reference; then the times, in turns.
+///
+/// # Panics
+/// Where something that is called proved is wrong.
+pub fn study(scene: &Scene, methods: &[Method], effort: Effort) -> Vec<Row> {
+    let methods: Vec<Method> = methods.iter().copied().filter(|method| applies(*method, scene)).collect();
+    let mut rows: Vec<Row> = methods.iter().map(|&method| first(scene, method)).collect();
+    let again: Vec<usize> = (0..rows.len()).filter(|&i| rows[i].milliseconds < budget_ms(effort)).collect();
+    let mut ways: Vec<Box<dyn FnMut()>> = again
+        .iter()
+        .map(|&i| -> Box<dyn FnMut()> {
+            let method = methods[i];
+            Box::new(move || {
+                std::hint::black_box(method.run(&scene.structure));
+            })
+        })
+        .collect();
+    let times = medians(&mut ways, effort.budget, effort.most);
+    for (&i, (milliseconds, runs)) in again.iter().zip(times) {
+        (rows[i].milliseconds, rows[i].runs) = (milliseconds, runs);
+    }
+    rows
+}
+
+fn budget_ms(effort: Effort) -> f64 {
+    effort.budget.as_secs_f64() * 1e3
+}
+
+/// Pyramids only where there are cones to replace.
+fn applies(method: Method, scene: &Scene) -> bool {
+    match method {
+        Method::Pyramid(..) => {
+            standard::program::<f64>(&scene.structure).groups.iter().any(|group| group.0 == Cone::Lorentz)
+        }
+        _ => true,
+    }
+}
+
+/// The first run: the answer, and what is wrong with it.
+fn first(scene: &Scene, method: Method) -> Row {
+    let started = Instant::now();
+    let answer = method.run(&scene.structure);
+    let milliseconds = started.elapsed().as_secs_f64() * 1e3;
+    let (value, uncertainty) = (scene.reference.value, scene.reference.uncertainty);
+    // The oracle takes data as meant up to 1e-12; the solvers promise their tolerance.
+    let (proof, promise) = (uncertainty + 1e-12, 1e-5);
+    let (low, high) = match (method, answer.claim) {
+        (_, Claim::Proved) => (answer.lower - proof, answer.upper + proof),
+        (Method::Pyramid(Side::Inner, _), Claim::Solved) => (0.0, answer.upper + promise),
+        (Method::Pyramid(Side::Outer, _), Claim::Solved) => (answer.lower - promise, f64::INFINITY),
+        _ => (0.0, f64::INFINITY),
+    };
+    assert!(low <= value && value <= high, "{}: {method:?} says {answer:?}, the reference is {value}", scene.name);
+    Row {
+        family: scene.family,
+        scene: scene.name.clone(),
+        bodies: scene.structure.bodies.len(),
+        method,
+        answer,
+        reference: value,
+        uncertainty,
+        error: answer.error(value),
+        milliseconds,
+        runs: 1,
+    }
+}

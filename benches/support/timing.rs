@@ -1,0 +1,54 @@
+//! Medians of several ways to do something, measured in turns, and what has to
+//! be known about the machine to read them.
+
+use std::time::{Duration, Instant};
+
+/// Runs every way once after the other, over and over, and returns for each its
+/// median time in ms and how often it ran. A way is left out once it alone has
+/// used `budget`, and all stop after `most` rounds; each runs at least once.
+pub fn medians(ways: &mut [Box<dyn FnMut() + '_>], budget: Duration, most: usize) -> Vec<(f64, usize)> {
+    let mut times: Vec<Vec<f64>> = vec![Vec::new(); ways.len()];
+    for _ in 0..most {
+        let mut any = false;
+        for (way, times) in ways.iter_mut().zip(&mut times) {
+            if times.iter().sum::<f64>() < budget.as_secs_f64() * 1e3 {
+                let started = Instant::now();
+                way();
+                times.push(started.elapsed().as_secs_f64() * 1e3);
+                any = true;
+            }
+        }
+        if !any {
+            break;
+        }
+    }
+    times.into_iter().map(|times| (median(&times), times.len())).collect()
+}
+
+/// The middle of a list of numbers, the mean of the middle two in an even one.
+pub fn median(values: &[f64]) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let middle = sorted.len() / 2;
+    if sorted.len() % 2 == 1 { sorted[middle] } else { f64::midpoint(sorted[middle - 1], sorted[middle]) }
+}
+
+/// Whether to measure: `cargo bench` says so; without it, as under
+/// `cargo test --benches`, a bench only shows that it works.
+pub fn measuring() -> bool {
+    let given = |wanted: &str| std::env::args().any(|argument| argument == wanted);
+    given("--bench") && !given("--test")
+}
+
+/// Revision, machine and its load.
+pub fn machine() -> String {
+    let revision = std::process::Command::new("git").args(["describe", "--always", "--dirty"]).output();
+    let revision = revision.map_or_else(|_| "unknown".into(), |out| String::from_utf8_lossy(&out.stdout).into_owned());
+    let processors = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let model = processors.lines().find_map(|line| line.strip_prefix("model name")).unwrap_or("unknown");
+    let model = model.trim_start_matches(['\t', ' ', ':']);
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let load = std::fs::read_to_string("/proc/loadavg").unwrap_or_default();
+    let load = load.split(' ').next().unwrap_or("unknown");
+    format!("revision {}; {model}, {cores} cores, load {load} at the start", revision.trim())
+}
