@@ -12,7 +12,7 @@ use crate::methods::{Answer, Claim, DEFAULT, Method};
 use crate::reference::tree;
 use crate::scenes::chain;
 use crate::scenes_support as support;
-use crate::timing::median;
+use crate::timing::{median, timed};
 
 /// Asks this program to measure one point: family, size and method follow.
 pub const ONE_POINT: &str = "--one-point";
@@ -154,14 +154,11 @@ pub fn one_point(arguments: &[String]) -> String {
     let structure = (family.build)(size.parse().expect("a size"));
     forget_peak();
     let before = resident("VmRSS:");
-    let started = Instant::now();
-    let answer = method.run(&structure);
-    let mut times = vec![started.elapsed().as_secs_f64() * 1e3];
+    let (answer, first) = timed(|| method.run(&structure));
+    let mut times = vec![first];
     let peak = resident("VmHWM:");
-    while started.elapsed() < Duration::from_millis(600) && times.len() < 15 {
-        let again = Instant::now();
-        std::hint::black_box(method.run(&structure));
-        times.push(again.elapsed().as_secs_f64() * 1e3);
+    while times.iter().sum::<f64>() < 500.0 && times.len() < 15 {
+        times.push(timed(|| method.run(&structure)).1);
     }
     let error = tree(&structure).map(|exact| check(&answer, exact.into()));
     let Answer { claim, lower, upper } = answer;

@@ -211,5 +211,10 @@ fn power(value: f64) -> String {
     if (value / 10_f64.powf(exponent) - 1.0).abs() > 1e-6 {
         return String::new();
     }
-    if (-2.0..=5.0).contains(&exponent) { format!("{value}") } else { format!("1e{exponent}") }
+    match exponent {
+        -2.0 => "0.01".to_owned(),
+        -1.0 => "0.1".to_owned(),
+        0.0..=5.0 => format!("{:.0}", 10_f64.powf(exponent)),
+        _ => format!("1e{exponent}"),
+    }
 }

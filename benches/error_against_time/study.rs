@@ -1,13 +1,13 @@
 //! Error against time: every method with every setting on every scene.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use crate::cone_program::Cone;
 use crate::methods::{Answer, Claim, Method};
 use crate::pyramid::Side;
 use crate::scenes::Scene;
 use crate::standard;
-use crate::timing::medians;
+use crate::timing::{medians, timed};
 
 /// What one method with one setting did on one scene.
 pub struct Row {
@@ -41,7 +41,8 @@ pub struct Effort {
 pub fn study(scene: &Scene, methods: &[Method], effort: Effort) -> Vec<Row> {
     let methods: Vec<Method> = methods.iter().copied().filter(|method| applies(*method, scene)).collect();
     let mut rows: Vec<Row> = methods.iter().map(|&method| first(scene, method)).collect();
-    let again: Vec<usize> = (0..rows.len()).filter(|&i| rows[i].milliseconds < budget_ms(effort)).collect();
+    let budget = effort.budget.as_secs_f64() * 1e3;
+    let again: Vec<usize> = (0..rows.len()).filter(|&i| rows[i].milliseconds < budget).collect();
     let mut ways: Vec<Box<dyn FnMut()>> = again
         .iter()
         .map(|&i| -> Box<dyn FnMut()> {
@@ -58,10 +59,6 @@ pub fn study(scene: &Scene, methods: &[Method], effort: Effort) -> Vec<Row> {
     rows
 }
 
-fn budget_ms(effort: Effort) -> f64 {
-    effort.budget.as_secs_f64() * 1e3
-}
-
 /// Pyramids only where there are cones to replace.
 fn applies(method: Method, scene: &Scene) -> bool {
     match method {
@@ -74,9 +71,7 @@ fn applies(method: Method, scene: &Scene) -> bool {
 
 /// The first run: the answer, and what is wrong with it.
 fn first(scene: &Scene, method: Method) -> Row {
-    let started = Instant::now();
-    let answer = method.run(&scene.structure);
-    let milliseconds = started.elapsed().as_secs_f64() * 1e3;
+    let (answer, milliseconds) = timed(|| method.run(&scene.structure));
     let (value, uncertainty) = (scene.reference.value, scene.reference.uncertainty);
     // The oracle takes data as meant up to 1e-12; the solvers promise their tolerance.
     let (proof, promise) = (uncertainty + 1e-12, 1e-5);

@@ -1,25 +1,32 @@
 //! Medians of several ways to do something, measured in turns, and what has to
 //! be known about the machine to read them.
+//!
+//! Times are processor times of this process: everything is done by one thread, so on a quiet
+//! machine they are what a clock on the wall shows, and on a busy one they do not count the
+//! others' turns.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
+
+use cpu_time::ProcessTime;
+
+/// Does some work and says how long it took, in ms.
+pub fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
+    let started = ProcessTime::now();
+    let result = std::hint::black_box(work());
+    (result, started.elapsed().as_secs_f64() * 1e3)
+}
 
 /// Runs every way once after the other, over and over, and returns for each its
 /// median time in ms and how often it ran. A way is left out once it alone has
 /// used `budget`, and all stop after `most` rounds; each runs at least once.
 pub fn medians(ways: &mut [Box<dyn FnMut() + '_>], budget: Duration, most: usize) -> Vec<(f64, usize)> {
+    let budget = budget.as_secs_f64() * 1e3;
     let mut times: Vec<Vec<f64>> = vec![Vec::new(); ways.len()];
-    for _ in 0..most {
-        let mut any = false;
+    for _ in 0..most.max(1) {
         for (way, times) in ways.iter_mut().zip(&mut times) {
-            if times.iter().sum::<f64>() < budget.as_secs_f64() * 1e3 {
-                let started = Instant::now();
-                way();
-                times.push(started.elapsed().as_secs_f64() * 1e3);
-                any = true;
+            if times.is_empty() || times.iter().sum::<f64>() < budget {
+                times.push(timed(way).1);
             }
-        }
-        if !any {
-            break;
         }
     }
     times.into_iter().map(|times| (median(&times), times.len())).collect()
