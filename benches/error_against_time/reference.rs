@@ -69,7 +69,7 @@ pub fn reference(structure: &Structure) -> Result<Reference, Missing> {
 
 /// The utilisation from the standard form in double-double arithmetic, solved in two
 /// ways that must agree.
-fn solved(structure: &Structure) -> Result<Reference, Missing> {
+pub fn solved(structure: &Structure) -> Result<Reference, Missing> {
     let program = standard::program::<DoubleDouble>(structure);
     let [first, second] = [(true, 1e-16), (false, 1e-14)].map(|(equilibrate, regularization)| {
         let solution = program.solve(settings(equilibrate, regularization));
