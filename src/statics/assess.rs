@@ -155,8 +155,7 @@ impl<'s> Answer<'s> {
                 for ((&link, wrench), demand) in self.blocks[index].links.iter().zip(&wrenches).zip(demands) {
                     self.record(link, wrench, demand);
                 }
-                let strongest = self.candidates.iter().map(|candidate| candidate.0).fold(0.0, f64::max);
-                if utilisation.lower > strongest {
+                if utilisation.lower > self.utilisation.lower {
                     self.moving = Some((index, mechanism));
                 }
                 self.candidates.push((utilisation.lower, index, shares));
