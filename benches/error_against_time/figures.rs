@@ -37,6 +37,7 @@ pub fn error_against_time(family: &str, rows: &[Row]) -> Figure {
         x: "time, ms",
         y: "error of the utilisation",
         panels: panels.collect(),
+        alike: false,
         hollow: Some("hollow: given up,\nnot called solved"),
     }
 }
@@ -60,6 +61,7 @@ pub fn growth(title: &str, y: &'static str, quantity: fn(&Point) -> f64, points:
         x: "bodies",
         y,
         panels: panels.collect(),
+        alike: true,
         hollow: Some("hollow: given up,\nnot called solved"),
     }
 }

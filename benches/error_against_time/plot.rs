@@ -56,6 +56,8 @@ pub struct Figure {
     pub x: &'static str,
     pub y: &'static str,
     pub panels: Vec<Panel>,
+    /// Whether all panels show the same ranges.
+    pub alike: bool,
     /// What hollow points mean.
     pub hollow: Option<&'static str>,
 }
@@ -90,9 +92,10 @@ impl Figure {
     }
 
     fn panel(&self, panel: &Panel, area: &DrawingArea<SVGBackend<'_>, Shift>) -> Result<(), Failure> {
-        let dots = || panel.series.iter().flat_map(|series| &series.dots);
-        let floor = panel.floor.map(|floor| floor.0);
-        let (x, y) = (range(dots().map(|dot| dot.x)), range(dots().map(|dot| dot.y).chain(floor)));
+        let shown = || self.panels.iter().filter(|other| self.alike || std::ptr::eq(*other, panel));
+        let dots = || shown().flat_map(|panel| &panel.series).flat_map(|series| &series.dots);
+        let floors = shown().filter_map(|panel| panel.floor).map(|floor| floor.0);
+        let (x, y) = (range(dots().map(|dot| dot.x)), range(dots().map(|dot| dot.y).chain(floors)));
         let mut chart = ChartBuilder::on(area)
             .caption(&panel.title, (FONT, 15))
             .margin(6)

@@ -48,25 +48,28 @@ pub fn exact(rows: &[Row]) -> String {
 
 /// How far each method's answers can be trusted, over all scenes.
 pub fn trust(rows: &[Row]) -> String {
-    let mut text = "| method | setting | answers called solved or proved | median error of these | largest error of these | other ends |\n\
-                    | --- | ---: | ---: | ---: | ---: | ---: |\n"
+    let mut text = "| method | setting | called solved or proved | median error of these | largest error of these | in | given up | called infeasible |\n\
+                    | --- | ---: | ---: | ---: | ---: | --- | ---: | ---: |\n"
         .to_owned();
     for method in Method::all().into_iter().filter(|&method| method != Method::Decide) {
         let of_method: Vec<&Row> = rows.iter().filter(|row| row.method == method).collect();
-        let sure = |row: &&&Row| matches!(row.answer.claim, Claim::Solved | Claim::Proved);
-        let mut errors: Vec<f64> =
-            of_method.iter().filter(sure).map(|row| row.error.unwrap_or(f64::INFINITY)).collect();
-        errors.sort_by(f64::total_cmp);
-        let (Some(largest), count) = (errors.last(), errors.len()) else { continue };
+        let count = |wanted: &[Claim]| of_method.iter().filter(|row| wanted.contains(&row.answer.claim)).count();
+        let sure = of_method.iter().filter(|row| matches!(row.answer.claim, Claim::Solved | Claim::Proved));
+        let mut errors: Vec<(f64, &str)> =
+            sure.map(|row| (row.error.unwrap_or(f64::INFINITY), row.scene.as_str())).collect();
+        errors.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let Some((largest, scene)) = errors.last() else { continue };
         let parameter = method.parameter();
         let parameter = if parameter >= 1.0 { format!("{parameter} sides") } else { format!("{parameter:e}") };
         let _ = writeln!(
             text,
-            "| {} | {parameter} | {count} of {} | {:.0e} | {largest:.0e} | {} |",
+            "| {} | {parameter} | {} of {} | {:.0e} | {largest:.0e} | {scene} | {} | {} |",
             method.name(),
+            errors.len(),
             of_method.len(),
-            errors[count / 2],
-            of_method.len() - count
+            errors[errors.len() / 2].0,
+            count(&[Claim::Stopped, Claim::Nothing]),
+            count(&[Claim::Infeasible])
         );
     }
     text
