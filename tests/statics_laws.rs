@@ -1,8 +1,6 @@
 //! The laws of statics on random structures: a law is violated where the
 //! brackets exclude it. Every answer is also judged from its fields alone.
 
-#[path = "support/families.rs"]
-mod families;
 #[path = "support/paper.rs"]
 mod paper;
 #[path = "support/random.rs"]
@@ -263,95 +261,6 @@ fn brackets_are_tight_and_decide() {
     // Where contacts and connections clamp each other the solver's mechanisms may
     // stay inadmissible; the bracket then is honest but wide.
     assert!(wide.len() * 50 <= total as usize, "wide: {wide:?}");
-}
-
-fn expect((structure, expected): (Structure, f64), what: &str) {
-    let found = answer(&structure);
-    let Bracket { lower, upper } = found.utilisation;
-    let room = 1e-9 * expected.max(1.0);
-    let right = if expected.is_infinite() {
-        lower.is_infinite()
-    } else {
-        lower - room <= expected && expected <= upper + room && upper - lower <= 1e-6 * expected.max(1.0)
-    };
-    assert!(right, "{what}: {expected} expected, {:?} {:?} found", found.verdict, found.utilisation);
-}
-
-#[test]
-fn cantilevers_bend_at_the_root() {
-    for count in [1, 2, 3, 10, 100, 1000, 10_000] {
-        expect(families::cantilever(count), &format!("cantilever of {count}"));
-    }
-}
-
-#[test]
-fn hanging_bodies_share_their_weight() {
-    for (mass, strength) in [(1.0, 100.0), (1e-6, 1e-3), (1e6, 1e3), (1e-3, 1e9)] {
-        for count in [1, 2, 3, 9, 20] {
-            expect(families::hang(mass, strength, count), &format!("{mass} kg under {count} of {strength} N"));
-        }
-    }
-}
-
-#[test]
-fn a_knifes_edge_is_decided() {
-    for off in [1e-3, 1e-6, 1e-9] {
-        expect(families::hang(1.0, families::G * (1.0 + off), 1), &format!("knife's edge {off} inside"));
-        expect(families::hang(1.0, families::G * (1.0 - off), 1), &format!("knife's edge {off} outside"));
-        let verdict = |strength| answer(&families::hang(1.0, strength, 1).0).verdict;
-        assert_eq!(verdict(families::G * (1.0 + off)), Verdict::Stable, "{off}");
-        assert_eq!(verdict(families::G * (1.0 - off)), Verdict::InternallyUnstable, "{off}");
-    }
-}
-
-#[test]
-fn the_weaker_in_series_decides() {
-    for ratio in [1.0, 1e3, 1e6, 1e12] {
-        expect(families::series([1e3, 1e3 / ratio], [1e9, 1e9 / ratio]), &format!("series {ratio}"));
-        expect(families::series([1.0, 1e-6], [1e3, 1e3 / ratio]), &format!("series {ratio}, light"));
-    }
-}
-
-#[test]
-fn two_chains_share_their_base() {
-    for (count, masses, base, strength) in [
-        (10, [0.4, 0.4], 1.0, 100.0),
-        (100, [0.4, 0.4], 1.0, 1000.0),
-        (50, [1e-3, 1e3], 1.0, 1e6),
-        (10, [1e-3, 1e-3], 1e3, 1e4),
-        (30, [1.0, 1.0], 0.0, 10.0),
-    ] {
-        expect(families::two_chains(count, masses, base, strength), &format!("two chains of {count}, {masses:?}"));
-    }
-}
-
-#[test]
-fn friction_angles_are_exact() {
-    for friction in [1e-6, 1e-3, 0.1, 0.5, 1.2, 10.0] {
-        let limit = f64::atan(friction).to_degrees();
-        // Directions are meant up to 1e-12.
-        for off in [1e-2, 1e-4, 1e-6].into_iter().filter(|off| friction * off > 1e-11) {
-            expect(families::incline(friction, limit * (1.0 - off)), &format!("incline {friction}, {off} below"));
-            expect(families::incline(friction, limit * (1.0 + off)), &format!("incline {friction}, {off} above"));
-        }
-    }
-    for friction in [0.1, 0.5, 2.0] {
-        let limit = f64::atan(0.5 / friction).to_degrees();
-        for off in [1e-2, 1e-4, 1e-6] {
-            expect(families::ladder(friction, limit * (1.0 + off)), &format!("ladder {friction}, {off} above"));
-            expect(families::ladder(friction, limit * (1.0 - off)), &format!("ladder {friction}, {off} below"));
-        }
-    }
-}
-
-#[test]
-fn harmonic_stacks_stand_up_to_the_limit() {
-    for count in [2, 6, 20, 50] {
-        for off in [1e-2, 1e-3, 1e-5] {
-            expect(families::overhang(count, 1.0 - off), &format!("stack of {count}, {off} inside"));
-            expect(families::overhang(count, 1.0 + off), &format!("stack of {count}, {off} outside"));
-        }
-    }
 }
 
 #[test]

@@ -29,6 +29,8 @@ mod frame;
 mod hull;
 mod interior_point;
 mod loads;
+mod maps;
+mod network;
 mod normal;
 mod part;
 mod patch;

@@ -10,15 +10,30 @@ use super::bracket::Problem;
 use super::clusters::Clusters;
 use super::collapse;
 use super::conic::{self, Attempt, Iterate};
-use super::interior_point;
+use super::interior_point::InteriorPoint;
 use super::loads::BodyLoad;
 use super::part::Part;
 use super::program::{Program, Purpose, local_body};
 use super::structure::Structure;
 
-/// Accuracy of t, relative to the larger of t and 1, that the block's own
-/// interior-point method is asked for: well inside the bracket's width.
-const TOLERANCE: f64 = 2e-8;
+/// Iterations after which the block's own interior-point method gives up; it needs
+/// 10 to 25, more where parts clamp themselves.
+const ITERATIONS: usize = 50;
+
+/// Error in t, as a share of the bracket's width that is asked for, from which on
+/// an iterate may prove a bracket that narrow.
+const NARROW: f64 = 0.5;
+
+/// Least improvement of the error from one attempt to prove a bracket to the next.
+const WORTHWHILE: f64 = 0.5;
+
+/// Scaled imbalance from which on an iterate's forces may prove an upper bound.
+const BALANCED: f64 = 1e-6;
+
+/// Errors below which an iterate is worth proving bounds from in the end, and the
+/// growth beyond the least one after which the iteration ends.
+const USEFUL: f64 = 1e-4;
+const SPOILED: f64 = 1e2;
 
 /// Ways of asking the general solver where that was not enough, tried in turn
 /// until the bracket is tight enough.
@@ -70,9 +85,7 @@ pub(super) fn assess_block(structure: &Structure, block: &Block, loads: &[BodyLo
     // Where supports face each other, begin with the attempt that bounds forces.
     let first = usize::from(faces_itself(&problem));
     let inset = ATTEMPTS[first].inset;
-    if let Some(iterate) = interior_point::solve(&program, inset, TOLERANCE) {
-        best.improve(&problem, &iterate, question);
-    }
+    best.iterate(&problem, inset, question);
     if best.upper.is_infinite()
         && !best.answers(question)
         && let Some(mechanism) = collapse::find(structure, block, loads)
@@ -173,6 +186,49 @@ impl Best {
                 let width = gap * self.upper.max(1.0);
                 self.upper.is_finite() && self.upper - self.lower <= width && !straddles_one
             }
+        }
+    }
+
+    /// Runs the block's own method until what it proves answers the question, or
+    /// it gets no further.
+    fn iterate(&mut self, problem: &Problem<'_>, inset: f64, question: Question) {
+        let mut method = InteriorPoint::new(problem.program, inset, true);
+        let mut finest: Option<(f64, Iterate)> = None;
+        let mut tried = f64::INFINITY;
+        for _ in 0..ITERATIONS {
+            let estimate = method.estimate();
+            match question {
+                Question::Decide(threshold) => {
+                    if estimate.lower > threshold {
+                        self.keep_lower(problem, &problem.program.twists(&method.iterate().v));
+                    } else if estimate.upper <= threshold && estimate.imbalance <= BALANCED {
+                        self.keep_upper(problem, &method.iterate(), 0.0);
+                    }
+                }
+                Question::ToGap(gap) => {
+                    if estimate.error <= NARROW * gap && estimate.error <= WORTHWHILE * tried {
+                        tried = estimate.error;
+                        let iterate = method.iterate();
+                        self.keep_lower(problem, &problem.program.twists(&iterate.v));
+                        self.keep_upper(problem, &iterate, 0.0);
+                    }
+                }
+            }
+            if self.answers(question) {
+                return;
+            }
+            // What the last digits of the factorisation spoil is given back as it was.
+            if estimate.error <= USEFUL && finest.as_ref().is_none_or(|(least, _)| estimate.error < *least) {
+                finest = Some((estimate.error, method.iterate()));
+            } else if finest.as_ref().is_some_and(|(least, _)| estimate.error > SPOILED * least) {
+                break;
+            }
+            if !method.step() {
+                break;
+            }
+        }
+        if let Some((_, iterate)) = finest {
+            self.improve(problem, &iterate, question);
         }
     }
 

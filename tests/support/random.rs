@@ -29,11 +29,21 @@ pub enum Kind {
     Redundant,
     /// Boxes with limits of zero and without limits.
     Hinged,
+    /// Masses and rated strengths log-normal with deviation 3: over ten decades.
+    LogNormal,
+    /// Stands on ground that is inclined another way under every cell.
+    Uneven,
+    /// Forces and torques on most bodies, acting away from their centres.
+    Loaded,
+    /// Stands freely on the ground, neighbours joined or only touching.
+    Standing,
+    /// Long and thin.
+    Slender,
 }
 
 impl Kind {
     /// Every kind.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 16] = [
         Self::Ordinary,
         Self::Masses,
         Self::Strengths,
@@ -45,6 +55,11 @@ impl Kind {
         Self::Clamped,
         Self::Redundant,
         Self::Hinged,
+        Self::LogNormal,
+        Self::Uneven,
+        Self::Loaded,
+        Self::Standing,
+        Self::Slender,
     ];
 }
 
@@ -85,6 +100,13 @@ impl Random {
     /// Uniform in the logarithm between `low` and `high`, both positive.
     pub fn decade(&mut self, low: f64, high: f64) -> f64 {
         self.between(low.ln(), high.ln()).exp()
+    }
+
+    /// Log-normal: the logarithm has deviation `sigma` about that of `median`
+    /// (Box and Muller 1958).
+    pub fn lognormal(&mut self, median: f64, sigma: f64) -> f64 {
+        let radius = (-2.0 * (1.0 - self.between(0.0, 1.0)).ln()).sqrt();
+        median * (sigma * radius * (std::f64::consts::TAU * self.between(0.0, 1.0)).cos()).exp()
     }
 
     /// True with probability `p`.
@@ -178,7 +200,9 @@ impl Builder {
         let mut cells = vec![[0, 0, 0]];
         while cells.len() < count {
             let from = cells[self.random.below(cells.len())];
-            let step = DIRECTIONS[self.random.below(6)];
+            // A slender one seldom leaves the first axis.
+            let along = self.kind == Kind::Slender && self.random.chance(0.95);
+            let step = DIRECTIONS[self.random.below(if along { 2 } else { 6 })];
             let cell = [from[0] + step[0], from[1] + step[1], from[2] + step[2]];
             if cell[2] >= 0 && !cells.contains(&cell) {
                 cells.push(cell);
@@ -190,6 +214,7 @@ impl Builder {
     fn add_body(&mut self, cell: [i32; 3]) {
         let density = match self.kind {
             Kind::Masses => self.random.decade(0.5, 5e5),
+            Kind::LogNormal => self.random.lognormal(500.0, 3.0),
             _ => self.random.decade(200.0, 1500.0),
         };
         let fixed = self.random.chance(if self.kind == Kind::Clamped { 0.4 } else { 0.04 });
@@ -204,8 +229,12 @@ impl Builder {
         let weight = self.structure.bodies.iter().map(|b| b.mass).sum::<f64>() * 9.81;
         let weight = if weight > 0.0 { weight } else { 1.0 };
         for index in 0..1 + self.random.below(4) {
-            let spread = if self.kind == Kind::Strengths { 1e3 } else { 3.0 };
-            let strength = weight * self.random.decade(1.0 / spread, spread) * 4.0;
+            let factor = match self.kind {
+                Kind::Strengths => self.random.decade(1e-3, 1e3),
+                Kind::LogNormal => self.random.lognormal(1.0, 3.0),
+                _ => self.random.decade(1.0 / 3.0, 3.0),
+            };
+            let strength = weight * factor * 4.0;
             let choice = if self.kind == Kind::Hinged && self.random.chance(0.7) { 1 } else { self.random.below(3) };
             let model = match choice {
                 0 => self.cone(),
@@ -266,6 +295,7 @@ impl Builder {
     /// instead, and some of the other pairs.
     fn join(&mut self, cells: &[[i32; 3]]) {
         let extra = if self.kind == Kind::Redundant { 1.0 } else { 0.5 };
+        let joined = if self.kind == Kind::Standing { 0.6 } else { 0.9 };
         for j in 1..cells.len() {
             let mut first = true;
             for i in 0..j {
@@ -275,7 +305,7 @@ impl Builder {
                 }
                 let (a, b) = (Anchor::Body(i), Anchor::Body(j));
                 let centre = (direction(cells[i]) + direction(step) * 0.5) * self.pitch;
-                if self.random.chance(if first { 0.9 } else { extra }) {
+                if self.random.chance(if first { joined } else { extra }) {
                     self.connect(a, b, centre, direction(step));
                     if self.kind == Kind::Redundant && self.random.chance(0.3) {
                         self.connect(a, b, centre, direction(step));
@@ -316,16 +346,18 @@ impl Builder {
     /// Stands the lowest cells on the ground, and holds some cells to the world.
     fn support(&mut self, cells: &[[i32; 3]]) {
         let hung = match self.kind {
-            Kind::Collinear => 0.0,
+            Kind::Collinear | Kind::Standing => 0.0,
             Kind::Clamped => 0.3,
             _ => 0.15,
         };
         let standing = self.random.chance(0.7);
+        let free = matches!(self.kind, Kind::Collinear | Kind::Standing | Kind::Uneven);
         for (i, cell) in cells.iter().enumerate() {
             let centre = direction(*cell) * self.pitch;
             let below = centre - Vec3::z() * (0.5 * self.pitch);
-            if cell[2] == 0 && (standing || self.kind == Kind::Collinear) {
-                self.touch(i, Anchor::World, below, Vec3::z());
+            if cell[2] == 0 && (standing || free) {
+                let slope = if self.kind == Kind::Uneven { self.random.vector() * 0.4 } else { Vec3::zeros() };
+                self.touch(i, Anchor::World, below, (Vec3::z() + slope).normalize());
             } else if self.random.chance(hung) || (i == 0 && !standing) {
                 self.connect(Anchor::World, Anchor::Body(i), below, Vec3::z());
             }
@@ -335,10 +367,11 @@ impl Builder {
     fn load(&mut self) {
         let weight = self.structure.bodies.iter().map(|b| b.mass).fold(0.0, f64::max) * 9.81;
         for body in 0..self.structure.bodies.len() {
-            if self.random.chance(0.1) {
+            if self.random.chance(if self.kind == Kind::Loaded { 0.7 } else { 0.1 }) {
                 let force = self.random.vector() * weight;
                 let torque = self.random.vector() * (0.3 * weight * self.pitch);
-                let arm = self.random.vector() * (0.5 * self.pitch);
+                let reach = if self.kind == Kind::Loaded { 5.0 } else { 0.5 };
+                let arm = self.random.vector() * (reach * self.pitch);
                 let at = self.random.chance(0.5).then(|| self.structure.bodies[body].com + arm);
                 self.structure.loads.push(Load { body, force, torque, at });
             }
