@@ -32,6 +32,8 @@ pub enum Claim {
     Solved,
     /// A number, with a status other than solved.
     Stopped,
+    /// A number, called solved, on the wrong side of the reference for a method that bounds from the other.
+    Misplaced,
     /// That no strength suffices.
     Infeasible,
     /// Nothing.

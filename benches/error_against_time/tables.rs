@@ -48,7 +48,7 @@ pub fn exact(rows: &[Row]) -> String {
 
 /// How far each method's answers can be trusted, over all scenes.
 pub fn trust(rows: &[Row]) -> String {
-    let mut text = "| method | setting | called solved or proved | median error of these | largest error of these | in | given up | called infeasible |\n\
+    let mut text = "| method | setting | called solved or proved | median error of these | largest error of these | in | given up | infeasible or wrong side |\n\
                     | --- | ---: | ---: | ---: | ---: | --- | ---: | ---: |\n"
         .to_owned();
     for method in Method::all().into_iter().filter(|&method| method != Method::Decide) {
@@ -69,7 +69,7 @@ pub fn trust(rows: &[Row]) -> String {
             of_method.len(),
             errors[errors.len() / 2].0,
             count(&[Claim::Stopped, Claim::Nothing]),
-            count(&[Claim::Infeasible])
+            count(&[Claim::Infeasible, Claim::Misplaced])
         );
     }
     text
