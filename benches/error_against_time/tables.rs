@@ -48,12 +48,13 @@ pub fn exact(rows: &[Row]) -> String {
 
 /// How far each method's answers can be trusted, over all scenes.
 pub fn trust(rows: &[Row]) -> String {
-    let mut text = "| method | setting | called solved or proved | median error of these | largest error of these | in | given up | infeasible or wrong side |\n\
+    let mut text = "| method | setting | called solved or proved | median error of these | largest error of these | in | given up, or wider than asked | infeasible, or wrong side |\n\
                     | --- | ---: | ---: | ---: | ---: | --- | ---: | ---: |\n"
         .to_owned();
     for method in Method::all().into_iter().filter(|&method| method != Method::Decide) {
         let of_method: Vec<&Row> = rows.iter().filter(|row| row.method == method).collect();
         let count = |wanted: &[Claim]| of_method.iter().filter(|row| wanted.contains(&row.answer.claim)).count();
+        let wider = of_method.iter().filter(|row| wider_than_asked(row)).count();
         let sure = of_method.iter().filter(|row| matches!(row.answer.claim, Claim::Solved | Claim::Proved));
         let mut errors: Vec<(f64, &str)> =
             sure.map(|row| (row.error.unwrap_or(f64::INFINITY), row.scene.as_str())).collect();
@@ -68,11 +69,17 @@ pub fn trust(rows: &[Row]) -> String {
             errors.len(),
             of_method.len(),
             errors[errors.len() / 2].0,
-            count(&[Claim::Stopped, Claim::Nothing]),
+            count(&[Claim::Stopped, Claim::Nothing]) + wider,
             count(&[Claim::Infeasible, Claim::Misplaced])
         );
     }
     text
+}
+
+/// Whether a proved bracket is wider than was asked for.
+fn wider_than_asked(row: &Row) -> bool {
+    let Method::ToGap(gap) = row.method else { return false };
+    row.answer.upper - row.answer.lower > gap * row.answer.upper.max(1.0)
 }
 
 /// Exponents of time and memory, and the largest structure that each method got to.

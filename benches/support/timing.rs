@@ -16,15 +16,22 @@ pub fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
     (result, started.elapsed().as_secs_f64() * 1e3)
 }
 
+/// What counts as quick, in ms.
+const QUICK: f64 = 10.0;
+
 /// Runs every way once after the other, over and over, and returns for each its
 /// median time in ms and how often it ran. A way is left out once it alone has
-/// used `budget`, and all stop after `most` rounds; each runs at least once.
+/// used `budget`, and all stop after `most` rounds; each runs at least once. What is
+/// quick runs once more before it is timed: the way before may have left it cold caches.
 pub fn medians(ways: &mut [Box<dyn FnMut() + '_>], budget: Duration, most: usize) -> Vec<(f64, usize)> {
     let budget = budget.as_secs_f64() * 1e3;
     let mut times: Vec<Vec<f64>> = vec![Vec::new(); ways.len()];
     for _ in 0..most.max(1) {
         for (way, times) in ways.iter_mut().zip(&mut times) {
             if times.is_empty() || times.iter().sum::<f64>() < budget {
+                if times.last().is_some_and(|&last| last < QUICK) {
+                    way();
+                }
                 times.push(timed(way).1);
             }
         }
