@@ -5,6 +5,8 @@
 
 #[path = "support/cone_program.rs"]
 mod cone_program;
+#[path = "support/machine.rs"]
+mod machine;
 #[path = "../tests/support/paper.rs"]
 mod paper;
 #[path = "../tests/support/random.rs"]
@@ -28,7 +30,7 @@ use random::{Kind, Random, Recipe, moved, structure};
 use steadfast::io::{SourceFile, read_structure};
 use steadfast::spatial::Pose;
 use steadfast::statics::{Question, Structure, assess};
-use timing::{machine, measuring, medians};
+use timing::{measuring, medians};
 
 /// Tolerance of the general solver: its default.
 const TOLERANCE: f64 = 1e-8;
@@ -56,8 +58,8 @@ fn main() {
     let scenes = scenes();
     let (budget, most) = if measuring() { (Duration::from_millis(1000), 51) } else { (Duration::ZERO, 1) };
     let mut report = format!(
-        "{}; one thread; medians, the methods in turns\n{:<20} {:>6} {:>9} {:>9} {:>9} {:>9} {:>8} {:>8} {:>8}  {}\n",
-        machine(),
+        "{}; medians of processor time, the methods in turns\n{:<20} {:>6} {:>9} {:>9} {:>9} {:>9} {:>8} {:>8} {:>8}  {}\n",
+        machine::describe(),
         "scene",
         "bodies",
         "paper ms",

@@ -38,7 +38,7 @@ pub fn error_against_time(family: &str, rows: &[Row]) -> Figure {
         y: "error of the utilisation",
         panels: panels.collect(),
         alike: false,
-        hollow: Some("hollow: given up,\nnot called solved"),
+        hollow: Some("hollow: given up,\nnot called solved;\ncarried over: had\nto be solved"),
     }
 }
 
@@ -75,6 +75,7 @@ const fn look(method: Method) -> Look {
         Method::Pyramid(Side::Outer, _) => ((86, 180, 233), Mark::Down),
         Method::ToGap(_) => ((0, 158, 115), Mark::Circle),
         Method::Decide => ((0, 0, 0), Mark::Cross),
+        Method::CarriedOver => ((204, 121, 167), Mark::Square),
     };
     Look { color, mark, line: true }
 }

@@ -154,11 +154,11 @@ pub fn one_point(arguments: &[String]) -> String {
     let structure = (family.build)(size.parse().expect("a size"));
     forget_peak();
     let before = resident("VmRSS:");
-    let (answer, first) = timed(|| method.run(&structure));
+    let (answer, first) = timed(|| method.run(&structure, None));
     let mut times = vec![first];
     let peak = resident("VmHWM:");
     while times.iter().sum::<f64>() < 500.0 && times.len() < 15 {
-        times.push(timed(|| method.run(&structure)).1);
+        times.push(timed(|| method.run(&structure, None)).1);
     }
     let error = tree(&structure).map(|exact| check(&answer, exact.into()));
     let Answer { claim, lower, upper } = answer;

@@ -13,6 +13,8 @@ mod cone_program;
 mod double_double;
 mod figures;
 mod growth;
+#[path = "../support/machine.rs"]
+mod machine;
 mod methods;
 #[path = "../../tests/support/paper.rs"]
 mod paper;
@@ -55,7 +57,7 @@ fn main() -> Result<(), Failure> {
     } else {
         Extent::Full
     };
-    let run = Run { extent, machine: timing::machine() };
+    let run = Run { extent, machine: machine::describe() };
     std::fs::create_dir_all(run.folder())?;
     if asked("study") || !asked("growth") {
         run.study()?;
@@ -107,7 +109,7 @@ impl Run {
             let name = format!("error_{}.svg", family.replace(' ', "_"));
             figures::error_against_time(family, &rows).draw(&self.folder().join(name))?;
         }
-        let header = format!("{}; one thread, medians, the methods in turns.", self.machine);
+        let header = format!("{}; medians of processor time, the methods in turns.", self.machine);
         self.tell("study", &format!("{header}\n\n{}\n{}", tables::exact(&rows), tables::trust(&rows)))
     }
 
@@ -122,7 +124,7 @@ impl Run {
         let draw = |name: &str, figure: plot::Figure| figure.draw(&self.folder().join(name));
         draw("growth_time.svg", figures::growth("Growth of time", "time, ms", |p| p.milliseconds, &points))?;
         draw("growth_memory.svg", figures::growth("Growth of memory", "memory added, MiB", |p| p.added, &points))?;
-        let header = format!("{}; one thread, a process a point, at most {} s.", self.machine, limit.as_secs());
+        let header = format!("{}; processor time, a process a point, at most {} s.", self.machine, limit.as_secs());
         self.tell("growth", &format!("{header}\n\n{}\n{}", tables::growth(&points), tables::long(&points)))
     }
 

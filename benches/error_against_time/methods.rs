@@ -1,7 +1,7 @@
 //! The methods that are compared, each with the knob that trades time for accuracy.
 
 use clarabel::solver::SolverStatus;
-use steadfast::statics::{Question, Structure, assess};
+use steadfast::statics::{Assessment, Memory, Question, Structure, assess, assess_near};
 
 use crate::cone_program::{Solution, settings};
 use crate::pyramid::{Side, linear};
@@ -21,6 +21,8 @@ pub enum Method {
     ToGap(f64),
     /// The oracle, asked only whether the utilisation is at most 1.
     Decide,
+    /// The same question, first put to the fields of a neighbouring state.
+    CarriedOver,
 }
 
 /// What a method claims about an answer.
@@ -30,7 +32,8 @@ pub enum Claim {
     Proved,
     /// A number, called solved.
     Solved,
-    /// A number, with a status other than solved.
+    /// A number, with a status other than solved; of carried-over fields an interval that a
+    /// solve was needed for after all.
     Stopped,
     /// A number, called solved, on the wrong side of the reference for a method that bounds from the other.
     Misplaced,
@@ -48,6 +51,12 @@ pub struct Answer {
     pub upper: f64,
 }
 
+/// Whether everything holds.
+pub const DECIDE: Question = Question::Decide(1.0);
+
+/// Why the oracle cannot refuse.
+const SOUND: &str = "the scenes are sound";
+
 /// Clarabel's default tolerance.
 pub const DEFAULT: f64 = 1e-8;
 
@@ -61,7 +70,7 @@ impl Method {
             all.extend([4, 8, 16, 32].map(|sides| Self::Pyramid(side, sides)));
         }
         all.extend((1..=9).map(|digits| Self::ToGap(10_f64.powi(-digits))));
-        all.push(Self::Decide);
+        all.extend([Self::Decide, Self::CarriedOver]);
         all
     }
 
@@ -74,6 +83,7 @@ impl Method {
             Self::Pyramid(Side::Outer, _) => "pyramid outer",
             Self::ToGap(_) => "ours",
             Self::Decide => "ours, verdict",
+            Self::CarriedOver => "ours, carried over",
         }
     }
 
@@ -83,12 +93,13 @@ impl Method {
             Self::Paper(tolerance) | Self::Standard(tolerance) => tolerance,
             Self::Pyramid(_, sides) => sides as f64,
             Self::ToGap(gap) => gap,
-            Self::Decide => 1.0,
+            Self::Decide | Self::CarriedOver => 1.0,
         }
     }
 
-    /// Answers from the structure alone: everything from there on is part of the time.
-    pub fn run(self, structure: &Structure) -> Answer {
+    /// Answers from the structure alone: everything from there on is part of the time. Only what
+    /// is carried over needs the memory of a neighbour with the same bodies.
+    pub fn run(self, structure: &Structure, neighbour: Option<&Memory>) -> Answer {
         match self {
             Self::Paper(tolerance) => match paper::solve(structure, tolerance) {
                 paper::Answer::Utilisation(value) => Answer::number(Claim::Solved, value),
@@ -104,8 +115,9 @@ impl Method {
                 let solution = program.solve(settings(DEFAULT));
                 solution.as_ref().map_or(Answer::NOTHING, from_dual)
             }
-            Self::ToGap(gap) => proved(structure, Question::ToGap(gap)),
-            Self::Decide => proved(structure, Question::Decide(1.0)),
+            Self::ToGap(gap) => proved(&assess(structure, Question::ToGap(gap)).expect(SOUND)),
+            Self::Decide => proved(&assess(structure, DECIDE).expect(SOUND)),
+            Self::CarriedOver => neighbour.map_or(Answer::NOTHING, |memory| carried_over(structure, memory)),
         }
     }
 }
@@ -135,9 +147,17 @@ fn from_dual(solution: &Solution<f64>) -> Answer {
     }
 }
 
-fn proved(structure: &Structure, question: Question) -> Answer {
-    let answer = assess(structure, question).expect("the scenes are sound");
+fn proved(answer: &Assessment) -> Answer {
     let (lower, upper) = (answer.utilisation.lower, answer.utilisation.upper);
     let claim = if lower.is_infinite() { Claim::Infeasible } else { Claim::Proved };
     Answer { claim, lower, upper }
+}
+
+fn carried_over(structure: &Structure, memory: &Memory) -> Answer {
+    let same: Vec<Option<usize>> = (0..structure.bodies.len()).map(Some).collect();
+    let (answer, _memory) = assess_near(structure, DECIDE, memory, &same).expect(SOUND);
+    match proved(&answer) {
+        found if answer.decided_by.is_without_solve() => found,
+        found => Answer { claim: Claim::Stopped, ..found },
+    }
 }

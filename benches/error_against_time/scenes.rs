@@ -7,8 +7,11 @@
 use petgraph::unionfind::UnionFind;
 use steadfast::io::{SourceFile, read_structure};
 use steadfast::spatial::{Pose, Rotation, Vec3};
-use steadfast::statics::{Anchor, Body, Connection, Connector, Contact, Load, Model, Question, Structure, assess};
+use steadfast::statics::{
+    Anchor, Body, Connection, Connector, Contact, Load, Memory, Model, Question, Structure, assess, assess_keeping,
+};
 
+use crate::methods::DECIDE;
 use crate::random::{Kind, Random, Recipe, structure};
 use crate::reference::{Missing, Reference, reference};
 use crate::scenes_support as support;
@@ -22,6 +25,8 @@ pub struct Scene {
     pub name: String,
     pub structure: Structure,
     pub reference: Reference,
+    /// What is remembered of the state before a connection on a loop was added, if there is one.
+    pub neighbour: Option<Memory>,
 }
 
 /// The scenes of the study; of each family only the first if `quick`.
@@ -72,7 +77,8 @@ impl Scene {
             strengthen(&mut structure, scale);
             reference = Reference { value: reference.value / scale, uncertainty: reference.uncertainty / scale };
         }
-        Ok(Self { family, name, structure, reference })
+        let neighbour = before_a_connection(&structure);
+        Ok(Self { family, name, structure, reference, neighbour })
     }
 }
 
@@ -98,28 +104,40 @@ fn random_scene(index: usize, kind: Kind) -> Option<Scene> {
     })
 }
 
-/// Whether some critical connection lies on a loop: without it, its two ends still hang together.
+/// Whether some critical connection lies on a loop.
 fn loop_is_critical(structure: &Structure) -> bool {
     let answer = assess(structure, Question::VALUE).expect("the scenes are sound");
+    let critical = answer.connections.iter().enumerate().filter(|(_, state)| state.critical);
+    critical.map(|(l, _)| l).any(|l| is_on_loop(structure, l))
+}
+
+/// The memory of the state without the middle one of the connections on loops.
+fn before_a_connection(structure: &Structure) -> Option<Memory> {
+    let on_loops: Vec<usize> = (0..structure.connections.len()).filter(|&l| is_on_loop(structure, l)).collect();
+    let mut before = structure.clone();
+    before.connections.remove(*on_loops.get(on_loops.len() / 2)?);
+    let (_answer, memory) = assess_keeping(&before, DECIDE).expect("the scenes are sound");
+    Some(memory)
+}
+
+/// Whether the two ends of a connection hang together without it.
+fn is_on_loop(structure: &Structure, without: usize) -> bool {
     let world = structure.bodies.len();
     let vertex = |anchor: Anchor| match anchor {
         Anchor::Body(i) if !structure.bodies[i].fixed => i,
         Anchor::Body(_) | Anchor::World => world,
     };
-    let critical = answer.connections.iter().enumerate().filter(|(_, state)| state.critical);
-    critical.map(|(l, _)| l).any(|without| {
-        let mut joined = UnionFind::new(world + 1);
-        for (l, connection) in structure.connections.iter().enumerate() {
-            if l != without {
-                joined.union(vertex(connection.parent), vertex(connection.child));
-            }
+    let mut joined = UnionFind::new(world + 1);
+    for (l, connection) in structure.connections.iter().enumerate() {
+        if l != without {
+            joined.union(vertex(connection.parent), vertex(connection.child));
         }
-        for contact in &structure.contacts {
-            joined.union(vertex(Anchor::Body(contact.body)), vertex(contact.against));
-        }
-        let connection = &structure.connections[without];
-        joined.equiv(vertex(connection.parent), vertex(connection.child))
-    })
+    }
+    for contact in &structure.contacts {
+        joined.union(vertex(Anchor::Body(contact.body)), vertex(contact.against));
+    }
+    let connection = &structure.connections[without];
+    joined.equiv(vertex(connection.parent), vertex(connection.child))
 }
 
 /// The suspended structure of 76 modules from the problem library.

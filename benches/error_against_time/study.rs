@@ -51,7 +51,7 @@ pub fn study(scene: &Scene, methods: &[Method], effort: Effort) -> Vec<Row> {
         .map(|&i| -> Box<dyn FnMut()> {
             let method = methods[i];
             Box::new(move || {
-                std::hint::black_box(method.run(&scene.structure));
+                std::hint::black_box(method.run(&scene.structure, scene.neighbour.as_ref()));
             })
         })
         .collect();
@@ -62,19 +62,20 @@ pub fn study(scene: &Scene, methods: &[Method], effort: Effort) -> Vec<Row> {
     rows
 }
 
-/// Pyramids only where there are cones to replace.
+/// Pyramids only where there are cones to replace, carried-over bounds only where there is a neighbour.
 fn applies(method: Method, scene: &Scene) -> bool {
     match method {
         Method::Pyramid(..) => {
             standard::program::<f64>(&scene.structure).groups.iter().any(|group| group.0 == Cone::Lorentz)
         }
-        _ => true,
+        Method::CarriedOver => scene.neighbour.is_some(),
+        Method::Paper(_) | Method::Standard(_) | Method::ToGap(_) | Method::Decide => true,
     }
 }
 
 /// The first run: the answer, and what is wrong with it.
 fn first(scene: &Scene, method: Method) -> Row {
-    let (mut answer, milliseconds) = timed(|| method.run(&scene.structure));
+    let (mut answer, milliseconds) = timed(|| method.run(&scene.structure, scene.neighbour.as_ref()));
     let (value, uncertainty) = (scene.reference.value, scene.reference.uncertainty);
     // The oracle takes data as meant up to 1e-12.
     let slack = uncertainty + 1e-12;

@@ -12,8 +12,8 @@ const EXACT: f64 = 1e-6;
 /// Time until the error is at most 1e-6, by scene: the fastest setting of each
 /// method that gets there, chosen with hindsight.
 pub fn exact(rows: &[Row]) -> String {
-    let mut text = "| scene | bodies | paper ms | standard ms | ours ms | verdict only ms | paper / ours | standard / ours | paper / verdict |\n\
-                    | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n"
+    let mut text = "| scene | bodies | paper ms | standard ms | ours ms | verdict only ms | carried over ms | paper / ours | standard / ours | paper / verdict |\n\
+                    | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n"
         .to_owned();
     for rows in rows.chunk_by(|a, b| a.scene == b.scene) {
         let fastest = |wanted: fn(Method) -> bool| {
@@ -25,13 +25,20 @@ pub fn exact(rows: &[Row]) -> String {
         let ours = fastest(|method| matches!(method, Method::ToGap(_)));
         let verdict = rows.iter().find(|row| row.method == Method::Decide && row.answer.upper <= 1.0 + 1e-12);
         let verdict = verdict.map(|row| row.milliseconds);
+        let carried = rows.iter().find(|row| row.method == Method::CarriedOver).map_or_else(
+            || "-".to_owned(),
+            |row| {
+                let time = figures(row.milliseconds);
+                if row.answer.claim == Claim::Proved { time } else { format!("({time})") }
+            },
+        );
         let ratio = |slow: Option<f64>, fast: Option<f64>| {
             slow.zip(fast).map_or_else(|| "-".to_owned(), |(slow, fast)| figures(slow / fast))
         };
         let time = |time: Option<f64>| time.map_or_else(|| "-".to_owned(), figures);
         let _ = writeln!(
             text,
-            "| {} | {} | {} | {} | {} | {} | {} | {} | {} |",
+            "| {} | {} | {} | {} | {} | {} | {carried} | {} | {} | {} |",
             rows[0].scene,
             rows[0].bodies,
             time(paper),
@@ -51,7 +58,7 @@ pub fn trust(rows: &[Row]) -> String {
     let mut text = "| method | setting | called solved or proved | median error of these | largest error of these | in | given up, or wider than asked | infeasible, or wrong side |\n\
                     | --- | ---: | ---: | ---: | ---: | --- | ---: | ---: |\n"
         .to_owned();
-    for method in Method::all().into_iter().filter(|&method| method != Method::Decide) {
+    for method in Method::all().into_iter().filter(|method| !matches!(method, Method::Decide | Method::CarriedOver)) {
         let of_method: Vec<&Row> = rows.iter().filter(|row| row.method == method).collect();
         let count = |wanted: &[Claim]| of_method.iter().filter(|row| wanted.contains(&row.answer.claim)).count();
         let wider = of_method.iter().filter(|row| wider_than_asked(row)).count();

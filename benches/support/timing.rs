@@ -1,5 +1,4 @@
-//! Medians of several ways to do something, measured in turns, and what has to
-//! be known about the machine to read them.
+//! Medians of several ways to do something, measured in turns.
 //!
 //! Times are processor times of this process: everything is done by one thread, so on a quiet
 //! machine they are what a clock on the wall shows, and on a busy one they do not count the
@@ -52,17 +51,4 @@ pub fn median(values: &[f64]) -> f64 {
 pub fn measuring() -> bool {
     let given = |wanted: &str| std::env::args().any(|argument| argument == wanted);
     given("--bench") && !given("--test")
-}
-
-/// Revision, machine and its load.
-pub fn machine() -> String {
-    let revision = std::process::Command::new("git").args(["describe", "--always", "--dirty"]).output();
-    let revision = revision.map_or_else(|_| "unknown".into(), |out| String::from_utf8_lossy(&out.stdout).into_owned());
-    let processors = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-    let model = processors.lines().find_map(|line| line.strip_prefix("model name")).unwrap_or("unknown");
-    let model = model.trim_start_matches(['\t', ' ', ':']);
-    let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    let load = std::fs::read_to_string("/proc/loadavg").unwrap_or_default();
-    let load = load.split(' ').next().unwrap_or("unknown");
-    format!("revision {}; {model}, {cores} cores, load {load} at the start", revision.trim())
 }

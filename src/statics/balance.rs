@@ -21,6 +21,9 @@ use super::structure::Structure;
 /// Rounds of correction; each reduces the residual by the factorisation's accuracy.
 const ROUNDS: usize = 6;
 
+/// Scaled imbalance that is mere rounding.
+const BALANCED: f64 = 1e-14;
+
 /// Room, relative to the square of the force through a link, that every component
 /// has at least: keeps the factorisation accurate where a connection is at its
 /// limit. A contact has less, since it must not leave its cone.
@@ -79,21 +82,29 @@ pub(super) fn restore(
     field: &mut [Wrench],
     idle: &[bool],
 ) {
-    let mut metric = metrics(block, program, iterate, field);
-    for ((metric, wrench), _) in metric.iter_mut().zip(field.iter_mut()).zip(idle).filter(|(_, idle)| **idle) {
-        *metric = Matrix6::zeros();
+    for (wrench, _) in field.iter_mut().zip(idle).filter(|(_, idle)| **idle) {
         *wrench = Wrench::ZERO;
     }
-    let mut network = Network::new(program, true);
-    network.factorise(&metric, |link| flexibility_root(&metric[link]));
+    let mut springs = None;
     for _ in 0..ROUNDS {
         clip(structure, block, field);
         let lacking = residuals(structure, block, program, loads, field);
         let mut rhs = Vec::with_capacity(6 * lacking.len());
-        for (i, wrench) in lacking.iter().enumerate() {
-            let factors = &program.row_factor[6 * i..6 * i + 6];
+        for (wrench, factors) in lacking.iter().zip(program.row_factor.chunks_exact(6)) {
             rhs.extend(wrench.force.iter().chain(wrench.torque.iter()).zip(factors).map(|(w, f)| -w * f));
         }
+        if rhs.iter().all(|lacking| lacking.abs() <= BALANCED) {
+            return;
+        }
+        let (network, metric) = springs.get_or_insert_with(|| {
+            let mut metric = metrics(block, program, iterate, &wrenches(program, iterate));
+            for (metric, _) in metric.iter_mut().zip(idle).filter(|(_, idle)| **idle) {
+                *metric = Matrix6::zeros();
+            }
+            let mut network = Network::new(program, true);
+            network.factorise(&metric, |link| flexibility_root(&metric[link]));
+            (network, metric)
+        });
         let mut changes: Vec<Option<Vector6<f64>>> = vec![None; field.len()];
         let pull = network.solve(&rhs, |link, wrench| changes[link] = Some(wrench));
         if !pull.iter().all(|x| x.is_finite()) {

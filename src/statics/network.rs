@@ -10,14 +10,14 @@
 //!
 //! Knows where links act and how stiff they are, nothing of cones.
 
-use nalgebra::linalg::QR;
-use nalgebra::{Const, Matrix3, Matrix6, SMatrix, SVector, Vector6};
+use nalgebra::{Matrix3, Matrix6, Vector6};
 
 use crate::spatial::Vec3;
 
 use super::frame::LinkFrame;
 use super::maps::{Side, Sides};
 use super::program::Program;
+use super::series::Stacked;
 use super::stiffness::Stiffness;
 
 /// Least pivot of a chain's root, as a share of the largest.
@@ -37,7 +37,7 @@ struct Chain {
     flexibility: Vec<Matrix6<f64>>,
     /// How the roots were stacked: from the flexibilities before each link and its
     /// own to those up to it.
-    stacked: Vec<QR<f64, Const<12>, Const<6>>>,
+    stacked: Vec<Stacked>,
 }
 
 /// A link of a chain: its index, and its wrench when that of the first link is 1.
@@ -57,10 +57,10 @@ struct Between {
 pub(super) struct Condensed {
     /// By junction, six rows each.
     pub junctions: Vec<f64>,
-    /// Per chain: the wrench with both ends held, and what the loads add to it
-    /// from link to link.
+    /// Per chain of several links: the wrench with both ends held.
     held: Vec<Vector6<f64>>,
-    added: Vec<Vec<Vector6<f64>>>,
+    /// Per link of those chains: what the loads before it add.
+    added: Vec<Vector6<f64>>,
 }
 
 impl Condensed {
@@ -69,7 +69,7 @@ impl Condensed {
         for (held, other) in self.held.iter_mut().zip(&other.held) {
             *held -= other * factor;
         }
-        for (added, other) in self.added.iter_mut().flatten().zip(other.added.iter().flatten()) {
+        for (added, other) in self.added.iter_mut().zip(&other.added) {
             *added -= other * factor;
         }
     }
@@ -145,10 +145,8 @@ impl Network {
             let mut triangle = Matrix6::zeros();
             for Passage { link, wrench } in &chain.links {
                 let root = wrench.tr_mul(&flexibility(*link));
-                let factor = stack(&triangle, &root.transpose());
-                triangle = factor.r();
+                chain.stacked.push(Stacked::new(&mut triangle, root.transpose()));
                 chain.flexibility.push(root);
-                chain.stacked.push(factor);
             }
             chain.root = inverse(&triangle);
             let root = |end: &Option<(usize, Matrix6<f64>)>| end.map(|(at, map)| (at, map * chain.root));
@@ -178,20 +176,15 @@ impl Network {
         let (mut held, mut added) = (Vec::new(), Vec::new());
         for chain in self.chains.iter().filter(|chain| chain.links.len() > 1) {
             let mut sum = Vector6::zeros();
-            let mut load = Vec::with_capacity(chain.links.len());
-            load.push(sum);
+            added.push(sum);
             // The wrench with which the chain is stretched least: a least squares
             // problem, since weighing squares would cancel.
             let mut stretch = Vector6::zeros();
             let behind = chain.flexibility[1..].iter().zip(&chain.stacked[1..]);
             for (Between { body, load: map }, (flexibility, factor)) in chain.bodies.iter().zip(behind) {
                 sum += map * Vector6::from_column_slice(&rows[6 * body..6 * body + 6]);
-                let mut both = SVector::<f64, 12>::zeros();
-                both.fixed_rows_mut::<6>(0).copy_from(&stretch);
-                both.fixed_rows_mut::<6>(6).copy_from(&flexibility.tr_mul(&sum));
-                factor.q_tr_mul(&mut both);
-                stretch = both.fixed_rows::<6>(0).into();
-                load.push(sum);
+                stretch = factor.reduce(stretch, flexibility.tr_mul(&sum));
+                added.push(sum);
             }
             let through = -(chain.root * stretch);
             for (end, wrench) in chain.ends.iter().zip([through, through + sum]) {
@@ -202,7 +195,6 @@ impl Network {
                 }
             }
             held.push(through);
-            added.push(load);
         }
         Condensed { junctions, held, added }
     }
@@ -210,14 +202,14 @@ impl Network {
     /// `a_I' M_II^-1 b_I`: the work of the loads within chains, their ends held.
     pub(super) fn work_within(&self, a: &Condensed, b: &Condensed) -> f64 {
         let several = self.chains.iter().filter(|chain| chain.links.len() > 1);
-        let loads = a.added.iter().zip(&b.added).zip(a.held.iter().zip(&b.held));
-        several
-            .zip(loads)
-            .map(|(chain, ((a, b), (through_a, through_b)))| {
-                let links = chain.flexibility.iter().zip(a.iter().zip(b));
-                links.map(|(f, (a, b))| f.tr_mul(&(a + through_a)).dot(&f.tr_mul(&(b + through_b)))).sum::<f64>()
-            })
-            .sum()
+        let (mut added_a, mut added_b) = (a.added.iter(), b.added.iter());
+        let mut work = 0.0;
+        for (chain, (through_a, through_b)) in several.zip(a.held.iter().zip(&b.held)) {
+            for ((flexibility, a), b) in chain.flexibility.iter().zip(&mut added_a).zip(&mut added_b) {
+                work += flexibility.tr_mul(&(a + through_a)).dot(&flexibility.tr_mul(&(b + through_b)));
+            }
+        }
+        work
     }
 
     /// `L^-1 x` over junctions, with `L L'` the factored matrix.
@@ -247,7 +239,10 @@ impl Network {
             }
         }
         let several = self.chains.iter().filter(|chain| chain.links.len() > 1);
-        for ((chain, held), added) in several.zip(&loads.held).zip(&loads.added) {
+        let mut added = &loads.added[..];
+        for (chain, held) in several.zip(&loads.held) {
+            let (own, others) = added.split_at(chain.links.len());
+            added = others;
             let at_end = |end: &Option<(usize, Matrix6<f64>)>| {
                 end.as_ref().map_or_else(Vector6::zeros, |(at, map)| {
                     map.tr_mul(&Vector6::from_column_slice(&junctions[6 * at..6 * at + 6]))
@@ -256,11 +251,10 @@ impl Network {
             let mut motion = at_end(&chain.ends[0]);
             let apart = motion + at_end(&chain.ends[1]);
             let through = chain.root * chain.root.tr_mul(&apart) + held;
-            for (link, added) in chain.links.iter().zip(added) {
+            for (link, added) in chain.links.iter().zip(own) {
                 wrench(link.link, link.wrench * (through + added));
             }
-            for ((Between { body, load }, flexibility), added) in chain.bodies.iter().zip(&chain.flexibility).zip(added)
-            {
+            for ((Between { body, load }, flexibility), added) in chain.bodies.iter().zip(&chain.flexibility).zip(own) {
                 motion -= flexibility * flexibility.tr_mul(&(through + added));
                 rows[6 * body..6 * body + 6].copy_from_slice(load.tr_mul(&motion).as_slice());
             }
@@ -350,14 +344,6 @@ fn blocks(turn: &Matrix3<f64>, lever: &Matrix3<f64>) -> Matrix6<f64> {
     map.fixed_view_mut::<3, 3>(3, 0).copy_from(lever);
     map.fixed_view_mut::<3, 3>(3, 3).copy_from(turn);
     map
-}
-
-/// The factors of `[triangle; rows]`.
-fn stack(triangle: &Matrix6<f64>, rows: &Matrix6<f64>) -> QR<f64, Const<12>, Const<6>> {
-    let mut both = SMatrix::<f64, 12, 6>::zeros();
-    both.fixed_view_mut::<6, 6>(0, 0).copy_from(triangle);
-    both.fixed_view_mut::<6, 6>(6, 0).copy_from(rows);
-    both.qr()
 }
 
 /// The inverse of an upper triangle; where that is singular to rounding, of one

@@ -170,6 +170,19 @@ impl Program {
         purpose: Purpose,
         floor: f64,
     ) -> Self {
+        let mut program = Self { purpose, ..Self::unstated(structure, block, loads, floor) };
+        match purpose {
+            Purpose::Utilisation => program.t_scale = program.typical_utilisation(structure, block),
+            Purpose::Support => program.preload = program.load.iter().map(|load| -load).collect(),
+        }
+        for (index, &link) in block.links.iter().enumerate() {
+            program.add_link(structure, index, link);
+        }
+        program
+    }
+
+    /// Frames, scales and loads without any variable: what evaluating bounds takes.
+    pub(super) fn unstated(structure: &Structure, block: &Block, loads: &[BodyLoad], floor: f64) -> Self {
         let frames: Vec<LinkFrame> = block.links.iter().map(|&link| LinkFrame::new(structure, link)).collect();
         let scales = Scales::new(structure, block, &frames, loads, floor);
         let mut row_factor = Vec::with_capacity(6 * block.bodies.len());
@@ -196,8 +209,8 @@ impl Program {
             Link::Contact(_) => false,
         });
         let rigid = rigid.collect();
-        let mut program = Self {
-            purpose,
+        Self {
+            purpose: Purpose::Utilisation,
             groups: Vec::new(),
             variables: 0,
             sides,
@@ -210,15 +223,7 @@ impl Program {
             frames,
             coms: block.bodies.iter().map(|&body| structure.bodies[body].com).collect(),
             rigid,
-        };
-        match purpose {
-            Purpose::Utilisation => program.t_scale = program.typical_utilisation(structure, block),
-            Purpose::Support => program.preload = program.load.iter().map(|load| -load).collect(),
         }
-        for (index, &link) in block.links.iter().enumerate() {
-            program.add_link(structure, index, link);
-        }
-        program
     }
 
     pub(super) fn rows(&self) -> usize {

@@ -14,6 +14,7 @@ use super::interior_point::InteriorPoint;
 use super::loads::BodyLoad;
 use super::part::Part;
 use super::program::{Program, Purpose, local_body};
+use super::rung::Rung;
 use super::structure::Structure;
 
 /// Iterations after which the block's own interior-point method gives up; it needs
@@ -85,13 +86,14 @@ pub(super) fn assess_block(structure: &Structure, block: &Block, loads: &[BodyLo
     // Where supports face each other, begin with the attempt that bounds forces.
     let first = usize::from(faces_itself(&problem));
     let inset = ATTEMPTS[first].inset;
-    best.iterate(&problem, inset, question);
+    let rung = best.iterate(&problem, inset, question);
     if best.upper.is_infinite()
         && !best.answers(question)
         && let Some(mechanism) = collapse::find(structure, block, loads)
     {
-        return Part::Collapses { mechanism };
+        return Part::Collapses { mechanism, decided_by: Rung::Solved };
     }
+    let rung = if best.answers(question) { rung } else { Rung::SolvedGenerally };
     for attempt in ATTEMPTS[first..].iter().chain(&ATTEMPTS[..first]) {
         if best.answers(question) {
             break;
@@ -128,6 +130,7 @@ pub(super) fn assess_block(structure: &Structure, block: &Block, loads: &[BodyLo
                 block.bodies.len()
             )
         }),
+        decided_by: rung,
     }
 }
 
@@ -153,6 +156,7 @@ fn unloaded(block: &Block) -> Part {
         mechanism: vec![Twist::ZERO; block.bodies.len()],
         shares: vec![0.0; block.links.len()],
         undecided_because: None,
+        decided_by: Rung::ClosedForm,
     }
 }
 
@@ -179,19 +183,12 @@ impl Best {
     }
 
     fn answers(&self, question: Question) -> bool {
-        match question {
-            Question::Decide(threshold) => self.upper <= threshold || self.lower > threshold,
-            Question::ToGap(gap) => {
-                let straddles_one = self.lower <= 1.0 && self.upper > 1.0;
-                let width = gap * self.upper.max(1.0);
-                self.upper.is_finite() && self.upper - self.lower <= width && !straddles_one
-            }
-        }
+        question.is_answered_by(&Bracket::new(self.lower, self.upper))
     }
 
     /// Runs the block's own method until what it proves answers the question, or
-    /// it gets no further.
-    fn iterate(&mut self, problem: &Problem<'_>, inset: f64, question: Question) {
+    /// it gets no further. Says which of the two it was.
+    fn iterate(&mut self, problem: &Problem<'_>, inset: f64, question: Question) -> Rung {
         let mut method = InteriorPoint::new(problem.program, inset, true);
         let mut finest: Option<(f64, Iterate)> = None;
         let mut tried = f64::INFINITY;
@@ -215,7 +212,7 @@ impl Best {
                 }
             }
             if self.answers(question) {
-                return;
+                return Rung::StoppedEarly;
             }
             // What the last digits of the factorisation spoil is given back as it was.
             if estimate.error <= USEFUL && finest.as_ref().is_none_or(|(least, _)| estimate.error < *least) {
@@ -230,6 +227,7 @@ impl Best {
         if let Some((_, iterate)) = finest {
             self.improve(problem, &iterate, question);
         }
+        Rung::Solved
     }
 
     fn improve(&mut self, problem: &Problem<'_>, iterate: &Iterate, question: Question) {
@@ -262,7 +260,7 @@ impl Best {
             return false;
         }
         restore(structure, block, program, loads, iterate, &mut field, &idle);
-        let Some((upper, demands)) = problem.upper_bound(&field, self.unit_mechanism()) else { return false };
+        let Some((upper, demands)) = problem.upper_bound(&field, self.unit_mechanism(), 0.0) else { return false };
         if upper < self.upper {
             self.upper = upper;
             self.wrenches = field;
