@@ -113,10 +113,11 @@ impl State {
         let heads = groups.iter().filter(|group| group.cone != Cone::Free).count() as f64;
         groups.push(Group { cone: Cone::NonNegative, first: size - 1, len: 1, link: 0, scale: 1.0, ties: None });
         let (mut cost, mut x, mut s) = (vec![0.0; size], vec![0.0; size], vec![0.0; size]);
-        for group in groups.iter().filter(|group| group.cone != Cone::Free) {
+        let resting = program.resting_heads().into_iter().chain([START]);
+        for (group, head) in groups.iter().zip(resting).filter(|(group, _)| group.cone != Cone::Free) {
             cost[group.first] = -inset / heads;
-            x[group.first] = START;
-            s[group.first] = START;
+            x[group.first] = head.max(START);
+            s[group.first] = START / x[group.first];
         }
         cost[size - 1] = 1.0;
         let wanted = program.load.iter().map(|load| -load).collect();

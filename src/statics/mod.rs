@@ -29,6 +29,7 @@ mod frame;
 mod hull;
 mod interior_point;
 mod loads;
+mod lowered;
 mod normal;
 mod part;
 mod patch;

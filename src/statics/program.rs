@@ -70,6 +70,9 @@ pub(super) enum Purpose {
     Support,
 }
 
+/// Smallest force scale of a body, relative to the largest.
+const FLOOR: f64 = 1e-9;
+
 /// The scaled program of one block.
 pub(super) struct Program {
     pub purpose: Purpose,
@@ -87,12 +90,14 @@ pub(super) struct Program {
     pub t_scale: f64,
     pub scales: Scales,
     pub frames: Vec<LinkFrame>,
+    /// Per link, the share of its strength that the program lets it use.
+    shares: Vec<f64>,
 }
 
 impl Program {
     /// The program scaled to each body's own forces, however small.
     pub(super) fn new(structure: &Structure, block: &Block, loads: &[BodyLoad], purpose: Purpose) -> Self {
-        Self::with_floor(structure, block, loads, purpose, 1e-9)
+        Self::with_floor(structure, block, loads, purpose, FLOOR)
     }
 
     /// The program with no body's force scale below `floor` times the largest.
@@ -102,6 +107,24 @@ impl Program {
         loads: &[BodyLoad],
         purpose: Purpose,
         floor: f64,
+    ) -> Self {
+        let all = vec![1.0; block.links.len()];
+        Self::build(structure, block, loads, purpose, floor, all)
+    }
+
+    /// The program in which each link may use only a share of its strength: what
+    /// it proves possible is possible.
+    pub(super) fn with_shares(structure: &Structure, block: &Block, loads: &[BodyLoad], shares: Vec<f64>) -> Self {
+        Self::build(structure, block, loads, Purpose::Utilisation, FLOOR, shares)
+    }
+
+    fn build(
+        structure: &Structure,
+        block: &Block,
+        loads: &[BodyLoad],
+        purpose: Purpose,
+        floor: f64,
+        shares: Vec<f64>,
     ) -> Self {
         let frames: Vec<LinkFrame> = block.links.iter().map(|&link| LinkFrame::new(structure, link)).collect();
         let scales = Scales::new(structure, block, &frames, loads, floor);
@@ -125,6 +148,7 @@ impl Program {
             t_scale: 1.0,
             scales,
             frames,
+            shares,
         };
         match purpose {
             Purpose::Utilisation => program.t_scale = program.typical_utilisation(structure, block),
@@ -137,6 +161,28 @@ impl Program {
             program.add_link(structure, block, index, link);
         }
         program
+    }
+
+    /// Per group, the head of its variables in a state without any wrench at the
+    /// typical utilisation: the strength, scaled.
+    pub(super) fn resting_heads(&self) -> Vec<f64> {
+        let mut sharing = vec![0.0; self.frames.len()];
+        for group in &self.groups {
+            sharing[group.link] += f64::from(u8::from(group.cone == Cone::Lorentz));
+        }
+        let head = |group: &Group| {
+            let (local, preload) = (&self.columns[group.first].local, &self.preload_local[group.link]);
+            let strength = -(local.force.dot(&preload.force) + local.torque.dot(&preload.torque));
+            let tied = group.ties.map_or(0.0, |slack| {
+                let row = self.columns[group.first].entries[0].0;
+                let width = self.preload.iter().find(|entry| entry.0 == row).map_or(0.0, |entry| -entry.1);
+                let local = &self.columns[slack].local;
+                width
+                    + (local.force.dot(&preload.force) + local.torque.dot(&preload.torque)) * self.t_scale / group.scale
+            });
+            tied + strength * self.t_scale / (group.scale * f64::max(sharing[group.link], 1.0))
+        };
+        self.groups.iter().map(head).collect()
     }
 
     pub(super) fn rows(&self) -> usize {
@@ -155,7 +201,10 @@ impl Program {
     /// Largest of force over strength: about the utilisation to expect.
     fn typical_utilisation(&self, structure: &Structure, block: &Block) -> f64 {
         let ratios = block.links.iter().zip(&self.scales.link).filter_map(|(link, force)| match link {
-            Link::Connection(i) => Some(force / structure.connectors[structure.connections[*i].connector].strength),
+            Link::Connection(i) => {
+                let connector = &structure.connectors[structure.connections[*i].connector];
+                Some(force * shear_leverage(&connector.model) / connector.strength)
+            }
             Link::Contact(_) => None,
         });
         let largest = ratios.fold(0.0, f64::max);
@@ -252,7 +301,7 @@ impl Program {
                 (true, true) => {
                     let slack = self.add_group(structure, block, link, Cone::NonNegative, &[local], scale);
                     preload += local * -negative;
-                    self.tie(link, slack, scale, negative + positive);
+                    self.tie(link, slack, scale, (negative + positive) * self.shares[link]);
                 }
             }
         }
@@ -271,7 +320,8 @@ impl Program {
         self.preload.push((row, -width / scale * self.t_scale));
     }
 
-    fn lever_of(&self, block: &Block, link: usize) -> f64 {
+    /// Longest lever of a link's bodies.
+    pub(super) fn lever_of(&self, block: &Block, link: usize) -> f64 {
         let frame = &self.frames[link];
         let levers =
             frame.sides().into_iter().filter_map(|(side, _)| local_body(block, side).map(|i| self.scales.lever[i]));
@@ -305,6 +355,7 @@ impl Program {
         if local == Wrench::ZERO {
             return;
         }
+        let local = local * self.shares[link];
         match self.purpose {
             Purpose::Utilisation => {
                 let entries = self.entries(structure, block, link, &local, self.t_scale);
@@ -341,6 +392,15 @@ impl Program {
             }
         }
         entries
+    }
+}
+
+/// Strength that a unit of shear demands, or of tension if that is more.
+fn shear_leverage(model: &Model) -> f64 {
+    match model {
+        Model::Cone { friction, .. } => friction.iter().map(|mu| 1.0 / mu).fold(1.0, f64::max),
+        Model::Patch { friction, .. } if *friction > 0.0 => (1.0 / friction).max(1.0),
+        Model::Box { .. } | Model::Patch { .. } => 1.0,
     }
 }
 
