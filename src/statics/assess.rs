@@ -4,11 +4,12 @@
 use crate::spatial::{Twist, Vec3, Wrench};
 
 use super::assessment::{Assessment, Bracket, ConnectionState, LeftOut, Question, Verdict};
-use super::blocks::{Block, Link, Vertex, cut};
+use super::blocks::{Block, Blocks, Link, Vertex, cut};
 use super::closed_form::assess_bridge;
 use super::frame::LinkFrame;
 use super::loads::{BodyLoad, lump, own_loads};
 use super::part::Part;
+use super::rung::Rung;
 use super::solve_block::assess_block;
 use super::structure::Structure;
 use super::tolerances::{CRITICAL_SHARE, DATA, TIE};
@@ -33,13 +34,54 @@ use super::validate::{InvalidStructure, validate};
 /// Non-finite or out-of-range data, or indices that point nowhere; all of them at once.
 pub fn assess(structure: &Structure, question: Question) -> Result<Assessment, Vec<InvalidStructure>> {
     validate(structure)?;
+    Ok(assess_with(structure, question, &mut Unknown))
+}
+
+/// What is known about a structure's blocks before and after they are solved.
+pub(super) trait Knowledge {
+    /// What can be said about a block with cycles without solving it.
+    fn bound(&mut self, structure: &Structure, block: &Block, loads: &[BodyLoad]) -> Option<Part>;
+
+    /// Takes note of the answer for a block with cycles.
+    fn note(&mut self, block: &Block, part: &Part);
+
+    /// Takes note of all blocks, once all that are answered are noted.
+    fn close(&mut self, blocks: &[Block]);
+}
+
+/// Nothing, for a structure that is met for the first time.
+struct Unknown;
+
+impl Knowledge for Unknown {
+    fn bound(&mut self, _: &Structure, _: &Block, _: &[BodyLoad]) -> Option<Part> {
+        None
+    }
+
+    fn note(&mut self, _: &Block, _: &Part) {}
+
+    fn close(&mut self, _: &[Block]) {}
+}
+
+/// Answers for a valid structure. What `knowledge` answers is not solved.
+pub(super) fn assess_with(structure: &Structure, question: Question, knowledge: &mut impl Knowledge) -> Assessment {
     let pieces = cut(structure);
+    let answer = assess_pieces(structure, &pieces, question, knowledge);
+    knowledge.close(&pieces.blocks);
+    answer
+}
+
+fn assess_pieces(
+    structure: &Structure,
+    pieces: &Blocks,
+    question: Question,
+    knowledge: &mut impl Knowledge,
+) -> Assessment {
     let loads = lump(structure, &pieces.blocks, own_loads(structure));
     let mut answer = Answer::new(structure, &pieces.blocks);
     for &root in &pieces.afloat {
         if let Some(twist) = drift(&loads[root]) {
             answer.collapse_afloat(root, twist);
-            return Ok(answer.finish());
+            return answer.finish();
         }
     }
     let (bridges, cyclic): (Vec<usize>, Vec<usize>) =
@@ -49,7 +91,21 @@ pub fn assess(structure: &Structure, question: Question) -> Result<Assessment, V
         answer.left_out_link(pieces.blocks[index].links[0]);
         answer.add(index, part);
     }
+    let mut open = Vec::new();
     for index in cyclic {
+        if answer.settled(question) {
+            answer.stop();
+            return answer.finish();
+        }
+        match knowledge.bound(structure, &pieces.blocks[index], &loads) {
+            Some(part) if part.answers(question) => {
+                knowledge.note(&pieces.blocks[index], &part);
+                answer.add(index, part);
+            }
+            _ => open.push(index),
+        }
+    }
+    for index in open {
         if answer.settled(question) {
             answer.stop();
             break;
@@ -57,9 +113,10 @@ pub fn assess(structure: &Structure, question: Question) -> Result<Assessment, V
         let block = &pieces.blocks[index];
         let part = assess_block(structure, block, &loads, question);
         answer.count_solved(block);
+        knowledge.note(block, &part);
         answer.add(index, part);
     }
-    Ok(answer.finish())
+    answer.finish()
 }
 
 /// The motion in which a body without any support is carried off by its load;
@@ -85,6 +142,7 @@ struct Answer<'s> {
     candidates: Vec<(f64, usize, Vec<f64>)>,
     left_out: LeftOut,
     undecided_because: Option<String>,
+    decided_by: Rung,
 }
 
 impl<'s> Answer<'s> {
@@ -105,6 +163,7 @@ impl<'s> Answer<'s> {
                 ..LeftOut::default()
             },
             undecided_because: None,
+            decided_by: Rung::ClosedForm,
         }
     }
 
@@ -147,11 +206,13 @@ impl<'s> Answer<'s> {
             return;
         }
         match part {
-            Part::Collapses { mechanism } => {
+            Part::Collapses { mechanism, decided_by } => {
+                self.decided_by = self.decided_by.max(decided_by);
                 self.collapsed = true;
                 self.moving = Some((index, mechanism));
             }
-            Part::Stands { utilisation, wrenches, demands, mechanism, shares, undecided_because } => {
+            Part::Stands { utilisation, wrenches, demands, mechanism, shares, undecided_because, decided_by } => {
+                self.decided_by = self.decided_by.max(decided_by);
                 for ((&link, wrench), demand) in self.blocks[index].links.iter().zip(&wrenches).zip(demands) {
                     self.record(link, wrench, demand);
                 }
@@ -243,6 +304,7 @@ impl<'s> Answer<'s> {
             mechanism: self.mechanism,
             left_out: self.left_out,
             undecided_because,
+            decided_by: self.decided_by,
         }
     }
 }

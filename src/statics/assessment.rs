@@ -2,6 +2,8 @@
 
 use crate::spatial::{Twist, Vec3, Wrench};
 
+use super::rung::Rung;
+
 /// An interval that is guaranteed to hold a value, both ends included.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bracket {
@@ -72,6 +74,18 @@ pub enum Question {
 impl Question {
     /// The utilisation to seven digits, ten times tighter than users are promised.
     pub const VALUE: Self = Self::ToGap(1e-7);
+
+    /// Whether a bracket on the utilisation is as narrow as this asks for.
+    pub fn is_answered_by(self, bracket: &Bracket) -> bool {
+        let Bracket { lower, upper } = *bracket;
+        match self {
+            Self::Decide(threshold) => upper <= threshold || lower > threshold,
+            Self::ToGap(gap) => {
+                let straddles_one = lower <= 1.0 && upper > 1.0;
+                upper.is_finite() && upper - lower <= gap * upper.max(1.0) && !straddles_one
+            }
+        }
+    }
 }
 
 /// The part of the answer that concerns one connection.
@@ -123,6 +137,8 @@ pub struct Assessment {
     pub left_out: LeftOut,
     /// Why the verdict is undecided; `None` for any other verdict.
     pub undecided_because: Option<String>,
+    /// What the answer took.
+    pub decided_by: Rung,
 }
 
 impl Assessment {

@@ -10,7 +10,7 @@ use crate::spatial::{Twist, Wrench};
 use super::balance::residuals;
 use super::blocks::{Block, Link};
 use super::connector::{Connector, Model};
-use super::demand::{WrenchError, demand};
+use super::demand::{WrenchError, demand_at_most};
 use super::frame::LinkFrame;
 use super::loads::{BodyLoad, cross_size};
 use super::program::{Program, local_body};
@@ -30,11 +30,17 @@ pub(super) struct Problem<'a> {
 impl Problem<'_> {
     /// Upper bound on the utilisation from a wrench per link, in its frame, and
     /// the utilisation of each link (0 for contacts).
-    /// `None` when the field does not balance or leaves a friction cone.
+    /// `None` when the field does not balance or leaves a friction cone. Where a
+    /// link's utilisation is at most `enough`, it is only said that it is.
     ///
     /// What imbalance is left, at most [`BALANCE`] of the flow through a body,
     /// is charged with its power in the twist field `twists` of unit dissipation.
-    pub(super) fn upper_bound(&self, field: &[Wrench], twists: Option<&[Twist]>) -> Option<(f64, Vec<f64>)> {
+    pub(super) fn upper_bound(
+        &self,
+        field: &[Wrench],
+        twists: Option<&[Twist]>,
+        enough: f64,
+    ) -> Option<(f64, Vec<f64>)> {
         let Self { structure, block, program, .. } = self;
         let mut charge = 0.0;
         let through = self.forces_through(field);
@@ -67,7 +73,7 @@ impl Problem<'_> {
                 }
                 Link::Connection(i) => {
                     let connector = &structure.connectors[structure.connections[i].connector];
-                    let upper = demand(connector, wrench, &rounding(wrench)).utilisation.upper;
+                    let upper = demand_at_most(connector, wrench, &rounding(wrench), enough);
                     if !(upper < f64::INFINITY) {
                         return None;
                     }

@@ -8,6 +8,7 @@ use super::demand::{WrenchError, demand};
 use super::frame::LinkFrame;
 use super::loads::BodyLoad;
 use super::part::Part;
+use super::rung::Rung;
 use super::structure::Structure;
 use super::tolerances::DATA;
 
@@ -35,7 +36,7 @@ pub(super) fn assess_bridge(structure: &Structure, block: &Block, loads: &[BodyL
             let demanded = demand(connector, &wrench, &error);
             let mechanism = vec![to_twist(&demanded.failing)];
             if demanded.utilisation.lower.is_infinite() {
-                return Part::Collapses { mechanism };
+                return Part::Collapses { mechanism, decided_by: Rung::ClosedForm };
             }
             let critical = demanded.utilisation.lower > 0.0;
             Part::Stands {
@@ -45,13 +46,14 @@ pub(super) fn assess_bridge(structure: &Structure, block: &Block, loads: &[BodyL
                 mechanism,
                 shares: vec![if critical { 1.0 } else { 0.0 }],
                 undecided_because: None,
+                decided_by: Rung::ClosedForm,
             }
         }
         Link::Contact(i) => {
             let friction = structure.contacts[i].friction;
             let (force_slip, torque_slip) = (DATA * load.force_size.norm(), DATA * load.torque_size.norm());
             if let Some(escape) = escape(&wrench, friction, force_slip, torque_slip) {
-                return Part::Collapses { mechanism: vec![to_twist(&escape)] };
+                return Part::Collapses { mechanism: vec![to_twist(&escape)], decided_by: Rung::ClosedForm };
             }
             Part::Stands {
                 utilisation: Bracket::exact(0.0),
@@ -60,6 +62,7 @@ pub(super) fn assess_bridge(structure: &Structure, block: &Block, loads: &[BodyL
                 mechanism: vec![Twist::ZERO],
                 shares: vec![0.0],
                 undecided_because: None,
+                decided_by: Rung::ClosedForm,
             }
         }
     }

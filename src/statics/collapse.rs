@@ -17,7 +17,6 @@ use super::blocks::{Block, Link};
 use super::clusters::{Clusters, Reduced};
 use super::conic::{Attempt, solve};
 use super::connector::{Connector, Model};
-use super::hull::edges;
 use super::loads::BodyLoad;
 use super::program::{Program, Purpose};
 use super::second_order::norm;
@@ -40,7 +39,7 @@ const ATTEMPTS: [Attempt; 4] = [
 /// proves that no strength lets the block stand; `None` when none was found.
 pub(super) fn find(structure: &Structure, block: &Block, loads: &[BodyLoad]) -> Option<Vec<Twist>> {
     let clusters = Clusters::new(structure, block, |_, link| match link {
-        Link::Connection(i) => rigid(&structure.connectors[structure.connections[i].connector]),
+        Link::Connection(i) => structure.connectors[structure.connections[i].connector].model.is_rigid(),
         Link::Contact(_) => false,
     });
     let mut reduced = clusters.reduce(structure, block, loads)?;
@@ -107,19 +106,6 @@ fn resisted(connector: &Connector, relative: &Twist) -> f64 {
             });
             closing.fold(v.z.abs(), f64::max)
         }
-    }
-}
-
-/// Whether a connector with strength without bound joins its two bodies rigidly.
-fn rigid(connector: &Connector) -> bool {
-    match &connector.model {
-        Model::Cone { .. } => true,
-        Model::Box { shear, tension, compression, bending, torsion } => {
-            [shear[0], shear[1], *tension, *compression, bending[0], bending[1], *torsion]
-                .iter()
-                .all(|limit| *limit > 0.0)
-        }
-        Model::Patch { friction, points } => *friction > 0.0 && edges(points).iter().all(|edge| edge.distance > 0.0),
     }
 }
 

@@ -63,7 +63,7 @@ pub(super) fn solve(program: &Program, attempt: &Attempt) -> Option<Iterate> {
     if !x.iter().chain(z).all(|value| value.is_finite()) {
         return None;
     }
-    let mut variables = vec![0.0; program.columns.len()];
+    let mut variables = vec![0.0; program.variables];
     for (group, &row) in program.groups.iter().zip(&layout.first_row) {
         variables[group.first..group.first + group.len].copy_from_slice(&z[row..row + group.len]);
     }
@@ -129,28 +129,21 @@ impl Layout {
         let mut columns: Vec<Vec<(usize, f64)>> = vec![Vec::new(); program.rows()];
         for (group, &first) in program.groups.iter().zip(&self.first_row) {
             for k in 0..group.len {
-                for &(row, value) in &program.columns[group.first + k].entries {
+                for (row, value) in program.entries(group, k) {
                     columns[row].push((first + k, -value));
                 }
             }
         }
-        for &(row, value) in &program.preload {
-            columns[row].push((self.preload_row, -value));
+        for (column, value) in columns.iter_mut().zip(&program.preload).filter(|(_, value)| **value != 0.0) {
+            column.push((self.preload_row, -value));
         }
         let mut starts = Vec::with_capacity(columns.len() + 1);
         let (mut rows, mut values) = (Vec::new(), Vec::new());
         starts.push(0);
         for column in &mut columns {
             column.sort_unstable_by_key(|entry| entry.0);
-            for &(row, value) in column.iter() {
-                // Several links preload one body: their entries in t's row add up.
-                if rows.len() > starts[starts.len() - 1] && rows.last() == Some(&row) {
-                    *values.last_mut().expect("as long as rows") += value;
-                } else {
-                    rows.push(row);
-                    values.push(value);
-                }
-            }
+            rows.extend(column.iter().map(|entry| entry.0));
+            values.extend(column.iter().map(|entry| entry.1));
             starts.push(rows.len());
         }
         CscMatrix::new(self.height, program.rows(), starts, rows, values)

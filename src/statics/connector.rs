@@ -4,6 +4,8 @@
 //! convex cones in (wrench, strength): twice the wrench demands twice the
 //! strength, no wrench demands none, and pushing the bodies together is free.
 
+use super::hull::edges;
+
 /// A kind of connector: a model of its limits and its rated strength.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Connector {
@@ -51,4 +53,19 @@ pub enum Model {
         /// must lie in their convex hull.
         points: Vec<[f64; 2]>,
     },
+}
+
+impl Model {
+    /// Whether a connector of this kind with strength without bound joins its two bodies rigidly.
+    pub(super) fn is_rigid(&self) -> bool {
+        match self {
+            Self::Cone { .. } => true,
+            Self::Box { shear, tension, compression, bending, torsion } => {
+                [shear[0], shear[1], *tension, *compression, bending[0], bending[1], *torsion]
+                    .iter()
+                    .all(|limit| *limit > 0.0)
+            }
+            Self::Patch { friction, points } => *friction > 0.0 && edges(points).iter().all(|edge| edge.distance > 0.0),
+        }
+    }
 }

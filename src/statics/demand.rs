@@ -6,6 +6,7 @@ use super::assessment::Bracket;
 use super::connector::{Connector, Model};
 use super::patch::least_normal_force;
 use super::second_order::norm;
+use super::spread::Spread;
 use super::tolerances::{DATA, ROUNDING};
 
 /// What a connector must provide to carry a wrench.
@@ -50,6 +51,19 @@ pub(super) fn demand(connector: &Connector, wrench: &Wrench, error: &WrenchError
         }
         Model::Patch { friction, points } => patch(connector.strength, *friction, points, wrench, error),
     }
+}
+
+/// Upper bound on what `wrench` demands, as tight as [`demand`]'s where it is
+/// larger than `enough`: what is less may be bounded in a cheaper way.
+pub(super) fn demand_at_most(connector: &Connector, wrench: &Wrench, error: &WrenchError, enough: f64) -> f64 {
+    if let Model::Patch { friction, points } = &connector.model {
+        let ample = Spread::new(points).ample_normal_force(wrench, *friction) - wrench.force.z + error.force.z;
+        let utilisation = ample.max(0.0) / connector.strength * (1.0 + ROUNDING);
+        if utilisation <= enough {
+            return utilisation;
+        }
+    }
+    demand(connector, wrench, error).utilisation.upper
 }
 
 fn cone(strength: f64, friction: &[f64; 2], radius: &[f64; 3], wrench: &Wrench, error: &WrenchError) -> Demand {

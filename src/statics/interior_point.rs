@@ -3,19 +3,15 @@
 //! Nesterov-Todd direction, Mehrotra's predictor and corrector, infeasible
 //! start; one factorisation of 6 x 6 blocks on the body graph per iteration (see
 //! `normal`), where a general solver factorises a system of all variables. It
-//! has no certificate for programs without a solution: it gives up, and `conic`,
+//! has no certificate for programs without a solution: it gets stuck, and `conic`,
 //! which answers the same question, is asked instead. As with `conic`, nothing
 //! that comes back is believed: see `bracket`.
 
 use super::conic::Iterate;
-use super::normal::{Metric, Normal, Operator, array};
-use super::program::{Cone, Group, Program};
+use super::normal::{Metric, Normal, Solution, add_forces, array, velocities};
+use super::program::{Cone, Form, Group, Program};
 use super::respect::respect_unlimited;
 use super::second_order::{aim, dot, shortened_step};
-
-/// Iterations after which the method gives up; it needs 10 to 25, more where
-/// parts clamp themselves.
-const ITERATIONS: usize = 50;
 
 /// Scaled forces, opening velocities and t at the start: about what the spanning
 /// tree carries.
@@ -27,44 +23,13 @@ const SHORTEN: f64 = 0.99;
 /// Steps shorter than this get nowhere.
 const LEAST_STEP: f64 = 1e-4;
 
-/// Errors below which an iterate is worth proving bounds from, and the growth
-/// beyond the least one after which the iteration ends.
-const USEFUL: f64 = 1e-4;
-const SPOILED: f64 = 1e2;
-
 /// Scaled bound on t above which the program counts as unsolvable.
 const LARGEST: f64 = 1e9;
 
-/// Solves `program` until t is accurate to `tolerance` times the larger of t and
-/// 1, with opening velocities inset by `inset` over all cones as in
-/// [`Attempt`](super::conic::Attempt). Where rounding ends the iteration before,
-/// the best iterate; `None` when none is worth anything, as without a solution.
-pub(super) fn solve(program: &Program, inset: f64, tolerance: f64) -> Option<Iterate> {
-    let mut state = State::new(program, inset);
-    let mut best: Option<(f64, Iterate)> = None;
-    for _ in 0..ITERATIONS {
-        let residuals = state.residuals();
-        let error = residuals.error(program.t_scale);
-        if error <= tolerance {
-            return Some(state.iterate(program));
-        }
-        // What the last digits of the factorisation spoil is given back as it was.
-        if error <= USEFUL && best.as_ref().is_none_or(|(least, _)| error < *least) {
-            best = Some((error, state.iterate(program)));
-        } else if best.as_ref().is_some_and(|(least, _)| error > SPOILED * least) {
-            break;
-        }
-        if !(residuals.value < LARGEST) || !state.advance(&residuals) {
-            break;
-        }
-    }
-    best.map(|(_, iterate)| iterate)
-}
-
-/// An iterate: `x = (z, t)` and `s = c + A' v` inside their cones.
-struct State {
-    operator: Operator,
-    normal: Normal,
+/// The method at work on a program: `x = (z, t)` and `s = c + A' v` inside their cones.
+pub(super) struct InteriorPoint<'p> {
+    program: &'p Program,
+    normal: Normal<'p>,
     /// The program's groups, and t's.
     groups: Vec<Group>,
     /// Number of cones.
@@ -75,6 +40,19 @@ struct State {
     x: Vec<f64>,
     s: Vec<f64>,
     v: Vec<f64>,
+    residuals: Residuals,
+}
+
+/// How far the iteration has come.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Estimate {
+    /// Error in t, as far as the residuals show, relative to the larger of t and 1.
+    pub error: f64,
+    /// What the forces and the motion would prove of t if they lacked nothing.
+    pub upper: f64,
+    pub lower: f64,
+    /// Scaled imbalance of the forces.
+    pub imbalance: f64,
 }
 
 /// What an iterate lacks.
@@ -84,17 +62,13 @@ struct Residuals {
     /// `c + A' v - s`.
     opening: Vec<f64>,
     gap: f64,
-    /// The larger of the two objectives' absolute values.
-    value: f64,
+    /// The objective as the forces and as the motion give it.
+    primal: f64,
+    dual: f64,
 }
 
-impl Residuals {
-    /// Error in t, as far as the residuals show, relative to the larger of t and 1.
-    fn error(&self, t_scale: f64) -> f64 {
-        let largest = |v: &[f64]| v.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-        let scale = self.value + t_scale.recip().min(1.0);
-        self.gap.max(largest(&self.balance)).max(1e2 * largest(&self.opening)) / scale
-    }
+fn largest(v: &[f64]) -> f64 {
+    v.iter().fold(0.0_f64, |m, x| m.max(x.abs()))
 }
 
 /// A direction of `x`, `s` and `v`.
@@ -104,46 +78,78 @@ struct Direction {
     v: Vec<f64>,
 }
 
-impl State {
-    fn new(program: &Program, inset: f64) -> Self {
-        let operator = Operator::new(program);
-        let normal = Normal::new(program, &operator);
-        let size = program.columns.len() + 1;
+impl<'p> InteriorPoint<'p> {
+    /// The start on `program`, with opening velocities inset by `inset` over all
+    /// cones as in [`Attempt`](super::conic::Attempt).
+    pub(super) fn new(program: &'p Program, inset: f64, in_series: bool) -> Self {
+        let normal = Normal::new(program, in_series);
+        let size = program.variables + 1;
         let mut groups = program.groups.clone();
         let heads = groups.iter().filter(|group| group.cone != Cone::Free).count() as f64;
-        groups.push(Group { cone: Cone::NonNegative, first: size - 1, len: 1, link: 0, scale: 1.0, ties: None });
+        groups.push(Group {
+            cone: Cone::NonNegative,
+            first: size - 1,
+            len: 1,
+            link: 0,
+            form: Form::Slack,
+            scale: 1.0,
+            rest: START,
+            tie_row: None,
+            ties: None,
+        });
         let (mut cost, mut x, mut s) = (vec![0.0; size], vec![0.0; size], vec![0.0; size]);
-        let resting = program.resting_heads().into_iter().chain([START]);
-        for (group, head) in groups.iter().zip(resting).filter(|(group, _)| group.cone != Cone::Free) {
+        // No wrench anywhere, and the same complementarity in every cone.
+        for group in groups.iter().filter(|group| group.cone != Cone::Free) {
             cost[group.first] = -inset / heads;
-            x[group.first] = head.max(START);
+            x[group.first] = group.rest.max(START);
             s[group.first] = START / x[group.first];
         }
         cost[size - 1] = 1.0;
         let wanted = program.load.iter().map(|load| -load).collect();
         let v = vec![0.0; program.rows()];
-        Self { operator, normal, groups, degree: heads + 1.0, wanted, cost, x, s, v }
+        let residuals = Residuals { balance: Vec::new(), opening: Vec::new(), gap: 0.0, primal: 0.0, dual: 0.0 };
+        let mut start = Self { program, normal, groups, degree: heads + 1.0, wanted, cost, x, s, v, residuals };
+        start.residuals = start.residuals();
+        start
     }
 
     fn residuals(&self) -> Residuals {
         let negative: Vec<f64> = self.x.iter().map(|x| -x).collect();
         let mut balance = self.wanted.clone();
-        self.operator.add_to(&mut balance, &negative);
-        let mut opening = self.operator.transposed(&self.v);
+        add_forces(self.program, &negative, &mut balance);
+        let mut opening = velocities(self.program, &self.v);
         for ((opening, cost), s) in opening.iter_mut().zip(&self.cost).zip(&self.s) {
             *opening += cost - s;
         }
-        let value = dot(&self.cost, &self.x).abs().max(dot(&self.wanted, &self.v).abs());
-        Residuals { balance, opening, gap: dot(&self.x, &self.s), value }
+        let (primal, dual) = (dot(&self.cost, &self.x), -dot(&self.wanted, &self.v));
+        Residuals { balance, opening, gap: dot(&self.x, &self.s), primal, dual }
     }
 
-    /// One step; whether it got anywhere.
-    fn advance(&mut self, residuals: &Residuals) -> bool {
-        let part = |v: &'_ [f64], group: &Group| v[group.first..group.first + group.len].to_vec();
+    /// How good the iterate is.
+    pub(super) fn estimate(&self) -> Estimate {
+        let Residuals { balance, opening, gap, primal, dual } = &self.residuals;
+        let t_scale = self.program.t_scale;
+        let scale = primal.abs().max(dual.abs()) + t_scale.recip().min(1.0);
+        let imbalance = largest(balance);
+        Estimate {
+            error: gap.max(imbalance).max(1e2 * largest(opening)) / scale,
+            upper: self.x[self.program.variables] * t_scale,
+            lower: dual * t_scale,
+            imbalance,
+        }
+    }
+
+    /// One step; whether it got anywhere. Without a solution t or the motion grow
+    /// without end.
+    pub(super) fn step(&mut self) -> bool {
+        let residuals = &self.residuals;
+        if !(residuals.primal.abs().max(residuals.dual.abs()) < LARGEST) {
+            return false;
+        }
         let mut metrics = Vec::with_capacity(self.groups.len());
         let mut points = self.x.clone();
         for group in &self.groups {
-            let Some(metric) = Metric::new(group, &part(&self.x, group), &part(&self.s, group)) else { return false };
+            let Some(metric) = Metric::new(group.cone, group.part(&self.x), group.part(&self.s)) else { return false };
             match group.cone {
                 Cone::Free => points[group.first] = 0.0,
                 Cone::NonNegative | Cone::Lorentz => {
@@ -152,7 +158,7 @@ impl State {
             }
             metrics.push(metric);
         }
-        self.normal.factorise(&self.operator, &self.groups, &metrics);
+        self.normal.factorise(&metrics);
         let affine: Vec<f64> = points.iter().map(|p| -p).collect();
         let predictor = self.direction(residuals, &metrics, affine, 1);
         let (reach_x, reach_s) = self.steps(&predictor, 1.0);
@@ -171,6 +177,7 @@ impl State {
         move_along(&mut self.x, &direction.x, step_x);
         move_along(&mut self.s, &direction.s, step_s);
         move_along(&mut self.v, &direction.v, step_s);
+        self.residuals = self.residuals();
         true
     }
 
@@ -196,15 +203,28 @@ impl State {
         let mut x = change(&s);
         for _ in 0..rounds {
             let mut rhs: Vec<f64> = residuals.balance.iter().map(|b| -b).collect();
-            self.operator.add_to(&mut rhs, &x);
-            let correction = self.normal.solve(&self.operator, &rhs);
+            add_forces(self.program, &x, &mut rhs);
+            let Solution { v: correction, known } = self.normal.solve(&rhs);
             for (v, d) in v.iter_mut().zip(&correction) {
                 *v += d;
             }
-            for (s, d) in s.iter_mut().zip(self.operator.transposed(&correction)) {
+            // Forces are corrected, not computed anew: a stiff link turns the
+            // rounding of its motion into force.
+            let mut motion = velocities(self.program, &correction);
+            for (s, d) in s.iter_mut().zip(&motion) {
                 *s += d;
             }
-            x = change(&s);
+            for (group, metric) in self.groups.iter().zip(metrics) {
+                let part = &mut motion[group.first..group.first + group.len];
+                metric.apply_inverse(part);
+                metric.apply_inverse(part);
+            }
+            for (variable, force) in known {
+                motion[variable] = force;
+            }
+            for (x, d) in x.iter_mut().zip(&motion) {
+                *x -= d;
+            }
         }
         for group in self.groups.iter().filter(|group| group.cone == Cone::Free) {
             s[group.first] = 0.0;
@@ -253,11 +273,12 @@ impl State {
         (longest(&self.x, &direction.x), longest(&self.s, &direction.s))
     }
 
-    fn iterate(&self, program: &Program) -> Iterate {
+    /// The iterate as it is.
+    pub(super) fn iterate(&self) -> Iterate {
         let mut z = self.x.clone();
         let t = z.pop().expect("t is the last");
         let mut v = self.v.clone();
-        respect_unlimited(program, &mut v);
+        respect_unlimited(self.program, &mut v);
         Iterate { v, z, t }
     }
 }
@@ -325,6 +346,20 @@ mod tests {
             latch(30.0, f64::INFINITY),
             latch(30.0, 1.0),
         ]
+    }
+
+    /// Solves to `tolerance`; `None` when the method gets stuck before.
+    fn solve(program: &Program, inset: f64, tolerance: f64) -> Option<Iterate> {
+        let mut method = InteriorPoint::new(program, inset, true);
+        for _ in 0..40 {
+            if method.estimate().error <= tolerance {
+                return Some(method.iterate());
+            }
+            if !method.step() {
+                return None;
+            }
+        }
+        None
     }
 
     /// The programs of all blocks with cycles.

@@ -33,7 +33,7 @@ impl Lowered {
             Link::Contact(_) => f64::INFINITY,
             Link::Connection(i) => {
                 let connector = &structure.connectors[structure.connections[*i].connector];
-                typical_demand(connector, program.scales.link[index], program.lever_of(block, index))
+                typical_demand(connector, program.scales.link[index], program.lever_of(index))
             }
         });
         Self { room: vec![ROOM; block.links.len()], typical: typical.collect() }

@@ -2,7 +2,8 @@
 
 use crate::spatial::{Twist, Wrench};
 
-use super::assessment::Bracket;
+use super::assessment::{Bracket, Question};
+use super::rung::Rung;
 
 /// What was found out about one block.
 pub(super) enum Part {
@@ -19,7 +20,23 @@ pub(super) enum Part {
         shares: Vec<f64>,
         /// Why the bracket is wider than asked for.
         undecided_because: Option<String>,
+        /// What the answer took.
+        decided_by: Rung,
     },
     /// No strength helps: the motion per body of the block that proves it.
-    Collapses { mechanism: Vec<Twist> },
+    Collapses {
+        mechanism: Vec<Twist>,
+        /// What the answer took.
+        decided_by: Rung,
+    },
+}
+
+impl Part {
+    /// Whether this is as much as `question` wants to know about the block.
+    pub(super) fn answers(&self, question: Question) -> bool {
+        match self {
+            Self::Stands { utilisation, .. } => question.is_answered_by(utilisation),
+            Self::Collapses { .. } => true,
+        }
+    }
 }

@@ -22,6 +22,7 @@ use super::blocks::{Block, Link, Vertex};
 use super::connector::Model;
 use super::frame::LinkFrame;
 use super::loads::BodyLoad;
+use super::maps::{Side, Sides, Six};
 use super::scales::Scales;
 use super::structure::Structure;
 
@@ -36,6 +37,18 @@ pub(super) enum Cone {
     Lorentz,
 }
 
+/// What a group's variables stand for in its link's frame, per newton.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Form {
+    /// Variable `k` acts along a component, times a factor.
+    Axes([(usize, f64); 6]),
+    /// The force `(f_z, f_x / mu, f_y / mu)` of a point in the plane z = 0; without
+    /// friction only `f_z`.
+    Point { at: [f64; 2], friction: f64 },
+    /// Nothing: a slack.
+    Slack,
+}
+
 /// A group of consecutive variables in one cone, all of one link.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Group {
@@ -45,18 +58,67 @@ pub(super) struct Group {
     pub len: usize,
     /// Index of the link in the block.
     pub link: usize,
+    pub form: Form,
     /// Force in N that a scaled variable of 1 stands for.
     pub scale: f64,
+    /// The first variable where the link carries nothing at the typical utilisation:
+    /// its strength, scaled.
+    pub rest: f64,
+    /// The row that ties this variable to another slack of the same component.
+    pub tie_row: Option<usize>,
     /// For a slack that only ties a box component: the variable it belongs to.
     pub ties: Option<usize>,
 }
 
-/// A column of A: `(row, entry)`, and the wrench in the link's frame that a
-/// variable of 1 N stands for.
-#[derive(Clone, Debug)]
-pub(super) struct Column {
-    pub entries: Vec<(usize, f64)>,
-    pub local: Wrench,
+impl Group {
+    /// The group's part of a vector over all variables.
+    pub(super) fn part<'v>(&self, x: &'v [f64]) -> &'v [f64] {
+        &x[self.first..self.first + self.len]
+    }
+
+    /// Adds the wrench of the scaled variables `x` of this group.
+    pub(super) fn add_wrench(&self, x: &[f64], wrench: &mut Six) {
+        match &self.form {
+            Form::Axes(axes) => {
+                for (value, (axis, factor)) in x.iter().zip(axes) {
+                    wrench[*axis] += self.scale * factor * value;
+                }
+            }
+            Form::Point { at: [px, py], friction } => {
+                let normal = self.scale * x[0];
+                wrench[2] += normal;
+                wrench[3] += py * normal;
+                wrench[4] -= px * normal;
+                if let [_, x, y] = *x {
+                    let (fx, fy) = (self.scale * friction * x, self.scale * friction * y);
+                    wrench[0] += fx;
+                    wrench[1] += fy;
+                    wrench[5] += px * fy - py * fx;
+                }
+            }
+            Form::Slack => {}
+        }
+    }
+
+    /// The transpose of [`add_wrench`](Self::add_wrench): opening velocities of this
+    /// group in the relative twist `u` of its link.
+    pub(super) fn velocities(&self, u: &Six, opening: &mut [f64]) {
+        match &self.form {
+            Form::Axes(axes) => {
+                for (value, (axis, factor)) in opening.iter_mut().zip(axes) {
+                    *value = self.scale * factor * u[*axis];
+                }
+            }
+            Form::Point { at: [px, py], friction } => {
+                opening[0] = self.scale * (u[2] + py * u[3] - px * u[4]);
+                if let [_, x, y] = opening {
+                    *x = self.scale * friction * (u[0] - py * u[5]);
+                    *y = self.scale * friction * (u[1] + px * u[5]);
+                }
+            }
+            Form::Slack => opening.fill(0.0),
+        }
+    }
 }
 
 /// What is asked of a block.
@@ -70,16 +132,16 @@ pub(super) enum Purpose {
     Support,
 }
 
-/// Smallest force scale of a body, relative to the largest.
-const FLOOR: f64 = 1e-9;
-
 /// The scaled program of one block.
 pub(super) struct Program {
     pub purpose: Purpose,
     pub groups: Vec<Group>,
-    pub columns: Vec<Column>,
-    /// Scaled column of t.
-    pub preload: Vec<(usize, f64)>,
+    /// Number of variables, t not among them.
+    pub variables: usize,
+    /// The ends of each link.
+    pub sides: Vec<Sides>,
+    /// Scaled column of t, by row.
+    pub preload: Vec<f64>,
     /// Wrench in each link's frame that t = 1 stands for (minus the preload).
     pub preload_local: Vec<Wrench>,
     /// Scaled load per row (right-hand side is its negative).
@@ -90,9 +152,18 @@ pub(super) struct Program {
     pub t_scale: f64,
     pub scales: Scales,
     pub frames: Vec<LinkFrame>,
-    /// Per link, the share of its strength that the program lets it use.
+    /// Centre of mass of each of the block's bodies in W.
+    pub coms: Vec<Vec3>,
+    /// Whether each link, if strong enough, holds its two bodies to each other in
+    /// every direction.
+    pub rigid: Vec<bool>,
+    /// Share of its strength that each link may use.
     shares: Vec<f64>,
 }
+
+/// Smallest force scale of a body, relative to the largest: a body without weight
+/// still needs one.
+const FLOOR: f64 = 1e-9;
 
 impl Program {
     /// The program scaled to each body's own forces, however small.
@@ -108,24 +179,30 @@ impl Program {
         purpose: Purpose,
         floor: f64,
     ) -> Self {
-        let all = vec![1.0; block.links.len()];
-        Self::build(structure, block, loads, purpose, floor, all)
+        Self { purpose, ..Self::unstated(structure, block, loads, floor) }.stated(structure, block)
     }
 
-    /// The program in which each link may use only a share of its strength: what
-    /// it proves possible is possible.
+    /// The program in which each link may use a share of its strength only: what it
+    /// proves possible is possible.
     pub(super) fn with_shares(structure: &Structure, block: &Block, loads: &[BodyLoad], shares: Vec<f64>) -> Self {
-        Self::build(structure, block, loads, Purpose::Utilisation, FLOOR, shares)
+        Self { shares, ..Self::unstated(structure, block, loads, FLOOR) }.stated(structure, block)
     }
 
-    fn build(
-        structure: &Structure,
-        block: &Block,
-        loads: &[BodyLoad],
-        purpose: Purpose,
-        floor: f64,
-        shares: Vec<f64>,
-    ) -> Self {
+    /// With the variables of every link.
+    fn stated(self, structure: &Structure, block: &Block) -> Self {
+        let mut program = self;
+        match program.purpose {
+            Purpose::Utilisation => program.t_scale = program.typical_utilisation(structure, block),
+            Purpose::Support => program.preload = program.load.iter().map(|load| -load).collect(),
+        }
+        for (index, &link) in block.links.iter().enumerate() {
+            program.add_link(structure, index, link);
+        }
+        program
+    }
+
+    /// Frames, scales and loads without any variable: what evaluating bounds takes.
+    pub(super) fn unstated(structure: &Structure, block: &Block, loads: &[BodyLoad], floor: f64) -> Self {
         let frames: Vec<LinkFrame> = block.links.iter().map(|&link| LinkFrame::new(structure, link)).collect();
         let scales = Scales::new(structure, block, &frames, loads, floor);
         let mut row_factor = Vec::with_capacity(6 * block.bodies.len());
@@ -137,52 +214,37 @@ impl Program {
             load.extend(wrench.force.iter().map(|f| f * force));
             load.extend(wrench.torque.iter().map(|m| m * torque));
         }
-        let mut program = Self {
-            purpose,
+        let sides = frames
+            .iter()
+            .map(|frame| {
+                frame.sides().map(|(side, sign)| {
+                    let i = local_body(block, side)?;
+                    let com = &structure.bodies[block.bodies[i]].com;
+                    Some(Side::new(frame, i, sign, com, &row_factor[6 * i..6 * i + 6]))
+                })
+            })
+            .collect();
+        let rigid = block.links.iter().map(|&link| match link {
+            Link::Connection(i) => structure.connectors[structure.connections[i].connector].model.is_rigid(),
+            Link::Contact(_) => false,
+        });
+        let rigid = rigid.collect();
+        Self {
+            purpose: Purpose::Utilisation,
             groups: Vec::new(),
-            columns: Vec::new(),
-            preload: Vec::new(),
+            variables: 0,
+            sides,
+            preload: vec![0.0; load.len()],
             preload_local: vec![Wrench::ZERO; block.links.len()],
             load,
             row_factor,
             t_scale: 1.0,
             scales,
             frames,
-            shares,
-        };
-        match purpose {
-            Purpose::Utilisation => program.t_scale = program.typical_utilisation(structure, block),
-            Purpose::Support => {
-                program.preload =
-                    program.load.iter().map(|load| -load).enumerate().filter(|entry| entry.1 != 0.0).collect();
-            }
+            coms: block.bodies.iter().map(|&body| structure.bodies[body].com).collect(),
+            rigid,
+            shares: vec![1.0; block.links.len()],
         }
-        for (index, &link) in block.links.iter().enumerate() {
-            program.add_link(structure, block, index, link);
-        }
-        program
-    }
-
-    /// Per group, the head of its variables in a state without any wrench at the
-    /// typical utilisation: the strength, scaled.
-    pub(super) fn resting_heads(&self) -> Vec<f64> {
-        let mut sharing = vec![0.0; self.frames.len()];
-        for group in &self.groups {
-            sharing[group.link] += f64::from(u8::from(group.cone == Cone::Lorentz));
-        }
-        let head = |group: &Group| {
-            let (local, preload) = (&self.columns[group.first].local, &self.preload_local[group.link]);
-            let strength = -(local.force.dot(&preload.force) + local.torque.dot(&preload.torque));
-            let tied = group.ties.map_or(0.0, |slack| {
-                let row = self.columns[group.first].entries[0].0;
-                let width = self.preload.iter().find(|entry| entry.0 == row).map_or(0.0, |entry| -entry.1);
-                let local = &self.columns[slack].local;
-                width
-                    + (local.force.dot(&preload.force) + local.torque.dot(&preload.torque)) * self.t_scale / group.scale
-            });
-            tied + strength * self.t_scale / (group.scale * f64::max(sharing[group.link], 1.0))
-        };
-        self.groups.iter().map(head).collect()
     }
 
     pub(super) fn rows(&self) -> usize {
@@ -203,7 +265,7 @@ impl Program {
         let ratios = block.links.iter().zip(&self.scales.link).filter_map(|(link, force)| match link {
             Link::Connection(i) => {
                 let connector = &structure.connectors[structure.connections[*i].connector];
-                Some(force * shear_leverage(&connector.model) / connector.strength)
+                Some(force * leverage(&connector.model) / connector.strength)
             }
             Link::Contact(_) => None,
         });
@@ -211,34 +273,28 @@ impl Program {
         if largest > 0.0 { largest } else { 1.0 }
     }
 
-    fn add_link(&mut self, structure: &Structure, block: &Block, index: usize, link: Link) {
-        let force = self.scales.link[index];
+    fn add_link(&mut self, structure: &Structure, index: usize, link: Link) {
+        let (force, share) = (self.scales.link[index], self.shares[index]);
         match link {
             Link::Contact(i) => {
-                self.add_friction_cone(structure, block, index, structure.contacts[i].friction, &Vec3::zeros(), force);
+                self.add_friction_cone(index, structure.contacts[i].friction, [0.0; 2], force);
             }
             Link::Connection(i) => {
                 let connector = &structure.connectors[structure.connections[i].connector];
+                let strength = connector.strength * share;
                 match &connector.model {
                     Model::Cone { friction: [a, b], radius: [c, d, e] } => {
-                        let [x, y, z] = [Vec3::x(), Vec3::y(), Vec3::z()];
-                        let locals = [
-                            Wrench::new(z, Vec3::zeros()),
-                            Wrench::new(x * *a, Vec3::zeros()),
-                            Wrench::new(y * *b, Vec3::zeros()),
-                            Wrench::new(Vec3::zeros(), x * *c),
-                            Wrench::new(Vec3::zeros(), y * *d),
-                            Wrench::new(Vec3::zeros(), z * *e),
-                        ];
-                        self.add_group(structure, block, index, Cone::Lorentz, &locals, force);
-                        self.add_preload(structure, block, index, -z * connector.strength);
+                        let axes = [(2, 1.0), (0, *a), (1, *b), (3, *c), (4, *d), (5, *e)];
+                        self.add_group(index, Cone::Lorentz, Form::Axes(axes), 6, force);
+                        self.rest_at(strength);
+                        self.add_preload(index, Wrench::new(-Vec3::z() * strength, Vec3::zeros()));
                     }
                     Model::Patch { friction, points } => {
-                        for p in points {
-                            let point = Vec3::new(p[0], p[1], 0.0);
-                            self.add_friction_cone(structure, block, index, *friction, &point, force);
+                        for &point in points {
+                            self.add_friction_cone(index, *friction, point, force);
+                            self.rest_at(strength / points.len() as f64);
                         }
-                        self.add_preload(structure, block, index, -Vec3::z() * connector.strength);
+                        self.add_preload(index, Wrench::new(-Vec3::z() * strength, Vec3::zeros()));
                     }
                     Model::Box { shear, tension, compression, bending, torsion } => {
                         let limits = [
@@ -249,63 +305,55 @@ impl Program {
                             (bending[1], bending[1]),
                             (*torsion, *torsion),
                         ];
-                        self.add_box(structure, block, index, &limits);
+                        self.add_box(index, &limits.map(|(opening, closing)| (opening * share, closing * share)));
                     }
                 }
             }
         }
     }
 
-    /// The force of one contact point at `point` in the link's frame.
-    fn add_friction_cone(
-        &mut self,
-        structure: &Structure,
-        block: &Block,
-        link: usize,
-        friction: f64,
-        point: &Vec3,
-        scale: f64,
-    ) {
-        let at = |direction: Vec3| Wrench::new(direction, point.cross(&direction));
-        let locals = [at(Vec3::z()), at(Vec3::x() * friction), at(Vec3::y() * friction)];
+    /// The force of one contact point in the plane z = 0 of the link's frame.
+    fn add_friction_cone(&mut self, link: usize, friction: f64, at: [f64; 2], scale: f64) {
+        let form = Form::Point { at, friction };
         if friction > 0.0 {
-            self.add_group(structure, block, link, Cone::Lorentz, &locals, scale);
+            self.add_group(link, Cone::Lorentz, form, 3, scale);
         } else {
-            self.add_group(structure, block, link, Cone::NonNegative, &locals[..1], scale);
+            self.add_group(link, Cone::NonNegative, form, 1, scale);
         }
     }
 
-    fn add_box(&mut self, structure: &Structure, block: &Block, link: usize, limits: &[(f64, f64); 6]) {
-        let lever = self.lever_of(block, link);
-        let mut preload = Wrench::ZERO;
+    fn add_box(&mut self, link: usize, limits: &[(f64, f64); 6]) {
+        let lever = self.lever_of(link);
+        let mut preload = [0.0; 6];
         for (component, &(negative, positive)) in limits.iter().enumerate() {
-            let axis = Vec3::ith(component % 3, 1.0);
-            let (local, scale) = if component < 3 {
-                (Wrench::new(axis, Vec3::zeros()), self.scales.link[link])
-            } else {
-                (Wrench::new(Vec3::zeros(), axis), self.scales.link[link] * lever)
-            };
+            let scale = self.scales.link[link] * if component < 3 { 1.0 } else { lever };
+            let along = |factor| Form::Axes([(component, factor); 6]);
             match (negative.is_finite(), positive.is_finite()) {
                 (false, false) => {
-                    self.add_group(structure, block, link, Cone::Free, &[local], scale);
+                    self.add_group(link, Cone::Free, along(1.0), 1, scale);
                 }
                 (true, false) => {
-                    self.add_group(structure, block, link, Cone::NonNegative, &[local], scale);
-                    preload += local * -negative;
+                    self.add_group(link, Cone::NonNegative, along(1.0), 1, scale);
+                    self.rest_at(negative);
+                    preload[component] -= negative;
                 }
                 (false, true) => {
-                    self.add_group(structure, block, link, Cone::NonNegative, &[-local], scale);
-                    preload += local * positive;
+                    self.add_group(link, Cone::NonNegative, along(-1.0), 1, scale);
+                    self.rest_at(positive);
+                    preload[component] += positive;
                 }
                 (true, true) if negative == 0.0 && positive == 0.0 => {}
                 (true, true) => {
-                    let slack = self.add_group(structure, block, link, Cone::NonNegative, &[local], scale);
-                    preload += local * -negative;
-                    self.tie(link, slack, scale, (negative + positive) * self.shares[link]);
+                    let slack = self.add_group(link, Cone::NonNegative, along(1.0), 1, scale);
+                    self.rest_at(negative);
+                    preload[component] -= negative;
+                    self.tie(link, slack, scale, negative + positive);
+                    self.rest_at(positive);
                 }
             }
         }
-        self.add_preload_wrench(structure, block, link, preload);
+        let [a, b, c, d, e, f] = preload;
+        self.add_preload(link, Wrench::new(Vec3::new(a, b, c), Vec3::new(d, e, f)));
     }
 
     /// Adds the row `p + q = t width` that ties a box component's two slacks.
@@ -313,90 +361,73 @@ impl Program {
         let row = self.rows();
         self.load.push(0.0);
         self.row_factor.push(1.0 / scale);
-        self.columns[slack].entries.push((row, 1.0));
-        let first = self.columns.len();
-        self.columns.push(Column { entries: vec![(row, 1.0)], local: Wrench::ZERO });
-        self.groups.push(Group { cone: Cone::NonNegative, first, len: 1, link, scale, ties: Some(slack) });
-        self.preload.push((row, -width / scale * self.t_scale));
+        self.preload.push(-width / scale * self.t_scale);
+        let one = self.groups.last_mut().expect("the slack that is tied");
+        one.tie_row = Some(row);
+        let other = self.add_group(link, Cone::NonNegative, Form::Slack, 1, scale);
+        let other = self.groups.last_mut().filter(|group| group.first == other).expect("just added");
+        (other.tie_row, other.ties) = (Some(row), Some(slack));
     }
 
     /// Longest lever of a link's bodies.
-    pub(super) fn lever_of(&self, block: &Block, link: usize) -> f64 {
-        let frame = &self.frames[link];
-        let levers =
-            frame.sides().into_iter().filter_map(|(side, _)| local_body(block, side).map(|i| self.scales.lever[i]));
-        levers.fold(0.0, f64::max)
+    pub(super) fn lever_of(&self, link: usize) -> f64 {
+        self.sides[link].iter().flatten().map(|side| self.scales.lever[side.body]).fold(0.0, f64::max)
     }
 
-    /// Adds variables with the given local wrenches; returns the first one's index.
-    fn add_group(
-        &mut self,
-        structure: &Structure,
-        block: &Block,
-        link: usize,
-        cone: Cone,
-        locals: &[Wrench],
-        scale: f64,
-    ) -> usize {
-        let first = self.columns.len();
-        for local in locals {
-            let entries = self.entries(structure, block, link, local, scale);
-            self.columns.push(Column { entries, local: *local });
-        }
-        self.groups.push(Group { cone, first, len: locals.len(), link, scale, ties: None });
+    /// Adds a group of variables; returns the first one's index.
+    fn add_group(&mut self, link: usize, cone: Cone, form: Form, len: usize, scale: f64) -> usize {
+        let first = self.variables;
+        self.variables += len;
+        self.groups.push(Group { cone, first, len, link, form, scale, rest: 0.0, tie_row: None, ties: None });
         first
     }
 
-    fn add_preload(&mut self, structure: &Structure, block: &Block, link: usize, force: Vec3) {
-        self.add_preload_wrench(structure, block, link, Wrench::new(force, Vec3::zeros()));
+    /// Says at what `strength` the group just added rests.
+    fn rest_at(&mut self, strength: f64) {
+        if let (Purpose::Utilisation, Some(group)) = (self.purpose, self.groups.last_mut()) {
+            group.rest = strength * self.t_scale / group.scale;
+        }
     }
 
-    fn add_preload_wrench(&mut self, structure: &Structure, block: &Block, link: usize, local: Wrench) {
+    fn add_preload(&mut self, link: usize, local: Wrench) {
         if local == Wrench::ZERO {
             return;
         }
-        let local = local * self.shares[link];
         match self.purpose {
             Purpose::Utilisation => {
-                let entries = self.entries(structure, block, link, &local, self.t_scale);
-                self.preload.extend(entries);
+                let Wrench { force: f, torque: m } = local * self.t_scale;
+                for side in self.sides[link].iter().flatten() {
+                    side.push(&[f.x, f.y, f.z, m.x, m.y, m.z], &mut self.preload);
+                }
                 self.preload_local[link] = local;
             }
+            // A preload of any size, along z as in every model that has one.
             Purpose::Support => {
-                let unit = local * (1.0 / local.force.norm());
-                self.add_group(structure, block, link, Cone::NonNegative, &[unit], self.scales.link[link]);
+                let along = Form::Axes([(2, -1.0); 6]);
+                self.add_group(link, Cone::NonNegative, along, 1, self.scales.link[link]);
             }
         }
     }
 
-    /// Scaled balance entries of a wrench in a link's frame.
-    fn entries(
-        &self,
-        structure: &Structure,
-        block: &Block,
-        link: usize,
-        local: &Wrench,
-        scale: f64,
-    ) -> Vec<(usize, f64)> {
-        let frame = &self.frames[link];
-        let mut entries = Vec::with_capacity(12);
-        for (side, sign) in frame.sides() {
-            if let Some(i) = local_body(block, side) {
-                let wrench = frame.to_body(local, &structure.bodies[block.bodies[i]].com);
-                for (k, value) in wrench.force.iter().chain(wrench.torque.iter()).enumerate() {
-                    if *value != 0.0 {
-                        let row = 6 * i + k;
-                        entries.push((row, value * sign * scale * self.row_factor[row]));
-                    }
-                }
-            }
+    /// The column of A of a group's variable `k`, as `(row, entry)`.
+    pub(super) fn entries(&self, group: &Group, k: usize) -> Vec<(usize, f64)> {
+        let mut unit = [0.0; 6];
+        unit[k] = 1.0;
+        let mut wrench = [0.0; 6];
+        group.add_wrench(&unit[..group.len], &mut wrench);
+        let mut entries = Vec::with_capacity(13);
+        for side in self.sides[group.link].iter().flatten() {
+            let values = side.map * nalgebra::Vector6::from(wrench);
+            entries.extend(values.iter().enumerate().map(|(row, value)| (6 * side.body + row, *value)));
         }
+        entries.extend(group.tie_row.map(|row| (row, 1.0)));
+        entries.retain(|entry| entry.1 != 0.0);
         entries
     }
 }
 
-/// Strength that a unit of shear demands, or of tension if that is more.
-fn shear_leverage(model: &Model) -> f64 {
+/// Strength that a unit of force demands in the direction in which that is most.
+fn leverage(model: &Model) -> f64 {
     match model {
         Model::Cone { friction, .. } => friction.iter().map(|mu| 1.0 / mu).fold(1.0, f64::max),
         Model::Patch { friction, .. } if *friction > 0.0 => (1.0 / friction).max(1.0),

@@ -20,7 +20,7 @@ const REGULARIZATION: f64 = 1e-10;
 /// has a limit.
 pub(super) fn respect_unlimited(program: &Program, v: &mut [f64]) {
     let free = program.groups.iter().filter(|group| group.cone == Cone::Free);
-    let equations: Vec<&[(usize, f64)]> = free.map(|group| &program.columns[group.first].entries[..]).collect();
+    let equations: Vec<Vec<(usize, f64)>> = free.map(|group| program.entries(group, 0)).collect();
     if equations.is_empty() {
         return;
     }
@@ -41,13 +41,13 @@ pub(super) fn respect_unlimited(program: &Program, v: &mut [f64]) {
 }
 
 /// Factorises `[I C'; C -delta I]`, upper triangle by columns.
-fn factorise(size: usize, equations: &[&[(usize, f64)]]) -> Option<QDLDLFactorisation<f64>> {
+fn factorise(size: usize, equations: &[Vec<(usize, f64)>]) -> Option<QDLDLFactorisation<f64>> {
     let total = size + equations.len();
     let mut starts: Vec<usize> = (0..=size).collect();
     let mut rows: Vec<usize> = (0..size).collect();
     let mut values = vec![1.0; size];
     for (index, equation) in equations.iter().enumerate() {
-        let mut entries = equation.to_vec();
+        let mut entries = equation.clone();
         entries.sort_unstable_by_key(|entry| entry.0);
         rows.extend(entries.iter().map(|entry| entry.0));
         values.extend(entries.iter().map(|entry| entry.1));

@@ -74,6 +74,23 @@ impl<const N: usize> Scaling<N> {
         self.rotate(v, -1.0, 1.0 / self.eta)
     }
 
+    /// `W^-2 = (2 u u' - J) / eta^2` with `u = (w_0, -w_1..)`, entry by entry free
+    /// of cancellation since `w_0 >= 1`.
+    pub(super) fn inverse_square(&self) -> [[f64; N]; N] {
+        let scale = (self.eta * self.eta).recip();
+        let u: [f64; N] = std::array::from_fn(|i| if i == 0 { self.w[0] } else { -self.w[i] });
+        std::array::from_fn(|r| {
+            std::array::from_fn(|c| {
+                let unit = match (r == c, r == 0) {
+                    (false, _) => 0.0,
+                    (true, true) => -1.0,
+                    (true, false) => 1.0,
+                };
+                scale * (2.0 * u[r] * u[c] + unit)
+            })
+        })
+    }
+
     fn rotate(&self, v: &[f64; N], sign: f64, scale: f64) -> [f64; N] {
         let along = dot(&self.w[1..], &v[1..]);
         let head = self.w[0] * v[0] + sign * along;

@@ -10,16 +10,32 @@ use super::bracket::Problem;
 use super::clusters::Clusters;
 use super::collapse;
 use super::conic::{self, Attempt, Iterate};
-use super::interior_point;
+use super::interior_point::InteriorPoint;
 use super::loads::BodyLoad;
 use super::lowered::Lowered;
 use super::part::Part;
 use super::program::{Program, Purpose, local_body};
+use super::rung::Rung;
 use super::structure::Structure;
 
-/// Accuracy of t, relative to the larger of t and 1, that the block's own
-/// interior-point method is asked for: well inside the bracket's width.
-const TOLERANCE: f64 = 2e-8;
+/// Iterations after which the block's own interior-point method gives up; it needs
+/// 10 to 25, more where parts clamp themselves.
+const ITERATIONS: usize = 50;
+
+/// Error in t, as a share of the bracket's width that is asked for, from which on
+/// an iterate may prove a bracket that narrow.
+const NARROW: f64 = 0.5;
+
+/// Least improvement of the error from one attempt to prove a bracket to the next.
+const WORTHWHILE: f64 = 0.5;
+
+/// Scaled imbalance from which on an iterate's forces may prove an upper bound.
+const BALANCED: f64 = 1e-6;
+
+/// Errors below which an iterate is worth proving bounds from in the end, and the
+/// growth beyond the least one after which the iteration ends.
+const USEFUL: f64 = 1e-4;
+const SPOILED: f64 = 1e2;
 
 /// Ways of asking the general solver where that was not enough, tried in turn
 /// until the bracket is tight enough.
@@ -37,6 +53,9 @@ const ATTEMPTS: [Attempt; 6] = [
 
 /// Inset that bounds the forces of parts that clamp themselves tightly.
 const CLAMPED: f64 = -1e-4;
+
+/// Rounds of lowering strengths that are not needed.
+const LOWERINGS: usize = 6;
 
 /// Ways of asking for a mechanism of fused clusters.
 const FUSED_ATTEMPTS: [Attempt; 2] = [
@@ -63,9 +82,6 @@ const IDLE: [f64; 4] = [0.0, 1e-6, 1e-4, 1e-2];
 /// when bodies are fused into clusters.
 const FUSED: [f64; 3] = [1e-7, 1e-5, 1e-3];
 
-/// Rounds of lowering strengths that are not needed.
-const LOWERINGS: usize = 6;
-
 /// Assesses a block with cycles.
 pub(super) fn assess_block(structure: &Structure, block: &Block, loads: &[BodyLoad], question: Question) -> Part {
     if block.bodies.iter().all(|&body| loads[body].is_zero()) {
@@ -77,23 +93,23 @@ pub(super) fn assess_block(structure: &Structure, block: &Block, loads: &[BodyLo
     // Where supports face each other, begin with the attempt that bounds forces.
     let first = usize::from(faces_itself(&problem));
     let inset = ATTEMPTS[first].inset;
-    for inset in [inset, -inset, CLAMPED] {
+    let mut rung = best.iterate(&problem, inset, question);
+    for inset in [-inset, CLAMPED] {
         if best.answers(question) {
             break;
         }
-        if let Some(iterate) = interior_point::solve(&program, inset, TOLERANCE) {
-            best.improve(&problem, &iterate, question);
-        }
+        rung = best.iterate(&problem, inset, question);
     }
     if best.upper.is_infinite()
         && !best.answers(question)
         && let Some(mechanism) = collapse::find(structure, block, loads)
     {
-        return Part::Collapses { mechanism };
+        return Part::Collapses { mechanism, decided_by: Rung::Solved };
     }
     if !best.answers(question) {
         best.lower_strengths(&problem, inset, question);
     }
+    let rung = if best.answers(question) { rung } else { Rung::SolvedGenerally };
     for attempt in ATTEMPTS[first..].iter().chain(&ATTEMPTS[..first]) {
         if best.answers(question) {
             break;
@@ -130,6 +146,7 @@ pub(super) fn assess_block(structure: &Structure, block: &Block, loads: &[BodyLo
                 block.bodies.len()
             )
         }),
+        decided_by: rung,
     }
 }
 
@@ -155,6 +172,7 @@ fn unloaded(block: &Block) -> Part {
         mechanism: vec![Twist::ZERO; block.bodies.len()],
         shares: vec![0.0; block.links.len()],
         undecided_because: None,
+        decided_by: Rung::ClosedForm,
     }
 }
 
@@ -181,14 +199,51 @@ impl Best {
     }
 
     fn answers(&self, question: Question) -> bool {
-        match question {
-            Question::Decide(threshold) => self.upper <= threshold || self.lower > threshold,
-            Question::ToGap(gap) => {
-                let straddles_one = self.lower <= 1.0 && self.upper > 1.0;
-                let width = gap * self.upper.max(1.0);
-                self.upper.is_finite() && self.upper - self.lower <= width && !straddles_one
+        question.is_answered_by(&Bracket::new(self.lower, self.upper))
+    }
+
+    /// Runs the block's own method until what it proves answers the question, or
+    /// it gets no further. Says which of the two it was.
+    fn iterate(&mut self, problem: &Problem<'_>, inset: f64, question: Question) -> Rung {
+        let mut method = InteriorPoint::new(problem.program, inset, true);
+        let mut finest: Option<(f64, Iterate)> = None;
+        let mut tried = f64::INFINITY;
+        for _ in 0..ITERATIONS {
+            let estimate = method.estimate();
+            match question {
+                Question::Decide(threshold) => {
+                    if estimate.lower > threshold {
+                        self.keep_lower(problem, &problem.program.twists(&method.iterate().v));
+                    } else if estimate.upper <= threshold && estimate.imbalance <= BALANCED {
+                        self.keep_upper(problem, &method.iterate(), 0.0);
+                    }
+                }
+                Question::ToGap(gap) => {
+                    if estimate.error <= NARROW * gap && estimate.error <= WORTHWHILE * tried {
+                        tried = estimate.error;
+                        let iterate = method.iterate();
+                        self.keep_lower(problem, &problem.program.twists(&iterate.v));
+                        self.keep_upper(problem, &iterate, 0.0);
+                    }
+                }
+            }
+            if self.answers(question) {
+                return Rung::StoppedEarly;
+            }
+            // What the last digits of the factorisation spoil is given back as it was.
+            if estimate.error <= USEFUL && finest.as_ref().is_none_or(|(least, _)| estimate.error < *least) {
+                finest = Some((estimate.error, method.iterate()));
+            } else if finest.as_ref().is_some_and(|(least, _)| estimate.error > SPOILED * least) {
+                break;
+            }
+            if !method.step() {
+                break;
             }
         }
+        if let Some((_, iterate)) = finest {
+            self.improve(problem, &iterate, question);
+        }
+        Rung::Solved
     }
 
     fn improve(&mut self, problem: &Problem<'_>, iterate: &Iterate, question: Question) {
@@ -221,7 +276,7 @@ impl Best {
             return false;
         }
         restore(structure, block, program, loads, iterate, &mut field, &idle);
-        let Some((upper, demands)) = problem.upper_bound(&field, self.unit_mechanism()) else { return false };
+        let Some((upper, demands)) = problem.upper_bound(&field, self.unit_mechanism(), 0.0) else { return false };
         if upper < self.upper {
             self.upper = upper;
             self.wrenches = field;
@@ -259,8 +314,7 @@ impl Best {
             }
             let program = Program::with_shares(structure, block, loads, shares.clone());
             let problem = Problem { program: &program, ..*problem };
-            let Some(iterate) = interior_point::solve(&program, inset, TOLERANCE) else { return };
-            self.improve(&problem, &iterate, question);
+            self.iterate(&problem, inset, question);
             if self.answers(question) || !self.upper.is_finite() {
                 return;
             }
@@ -296,8 +350,8 @@ impl Best {
         let program = Program::new(&reduced.structure, &reduced.block, &reduced.loads, Purpose::Utilisation);
         let inner =
             Problem { structure: &reduced.structure, block: &reduced.block, loads: &reduced.loads, program: &program };
-        let own = std::iter::once_with(|| interior_point::solve(&program, FUSED_ATTEMPTS[0].inset, TOLERANCE));
-        for iterate in own.chain(FUSED_ATTEMPTS.iter().map(|attempt| conic::solve(&program, attempt))).flatten() {
+        for attempt in &FUSED_ATTEMPTS {
+            let Some(iterate) = conic::solve(&program, attempt) else { continue };
             let twists = program.twists(&iterate.v);
             if let Some((lower, inner_shares)) = inner.lower_bound(&twists)
                 && lower > self.lower

@@ -67,21 +67,30 @@ impl Stiffness {
         self.blocks.fill([[0.0; 6]; 6]);
     }
 
-    /// Adds `u u'` for a column `u` that is not zero on one or two bodies.
-    pub(super) fn add_square(&mut self, column: &[(usize, [f64; 6])]) {
-        for (i, a) in column {
-            for (j, b) in column {
-                let (row, at) = (self.position[*i], self.position[*j]);
-                if row >= at {
-                    let index = self.index(row, at);
-                    for (target, factor) in self.blocks[index].iter_mut().zip(b) {
-                        for (entry, value) in target.iter_mut().zip(a) {
-                            *entry += value * factor;
-                        }
-                    }
+    /// Adds a block at the row of body `i` and the column of body `j`; of a
+    /// diagonal block, the lower triangle counts.
+    pub(super) fn add(&mut self, i: usize, j: usize, block: &Matrix) {
+        let (row, at) = (self.position[i], self.position[j]);
+        if row >= at {
+            let index = self.index(row, at);
+            for (target, column) in self.blocks[index].iter_mut().zip(block) {
+                for (entry, value) in target.iter_mut().zip(column) {
+                    *entry += value;
+                }
+            }
+        } else {
+            let index = self.index(at, row);
+            for (c, target) in self.blocks[index].iter_mut().enumerate() {
+                for (entry, column) in target.iter_mut().zip(block) {
+                    *entry += column[c];
                 }
             }
         }
+    }
+
+    /// Number of bodies.
+    pub(super) fn bodies(&self) -> usize {
+        self.position.len()
     }
 
     /// Overwrites the matrix, which must be positive semidefinite, with its factor.
@@ -254,7 +263,7 @@ mod tests {
         let bodies = 7;
         let pairs: Vec<(usize, usize)> = (0..bodies).map(|i| (i, (i + 1) % bodies)).collect();
         let mut matrix = Stiffness::new(bodies, pairs.iter().copied());
-        let mut columns = Vec::new();
+        let mut columns: Vec<[(usize, [f64; 6]); 2]> = Vec::new();
         for (n, &(i, j)) in pairs.iter().enumerate() {
             for k in 0..8 {
                 let entry = |seed: usize| ((seed * 7 + k * 13 + n * 5) % 11) as f64 - 5.0;
@@ -262,7 +271,11 @@ mod tests {
             }
         }
         for column in &columns {
-            matrix.add_square(column);
+            for (i, a) in column {
+                for (j, b) in column.iter().filter(|(j, _)| i <= j) {
+                    matrix.add(*j, *i, &std::array::from_fn(|c| std::array::from_fn(|r| b[r] * a[c])));
+                }
+            }
         }
         let wanted: Vec<f64> = (0..6 * bodies).map(|k| (k as f64 * 0.7).sin()).collect();
         let mut rhs = vec![0.0; wanted.len()];

@@ -2,6 +2,8 @@
 //!
 //! Solvers turn a NaN into a confident number, so nothing non-finite passes.
 
+use std::fmt::Arguments;
+
 use crate::spatial::Vec3;
 
 use super::connector::Model;
@@ -32,50 +34,54 @@ impl std::error::Error for InvalidStructure {}
 /// All problems at once, in the order of the structure's fields.
 pub fn validate(structure: &Structure) -> Result<(), Vec<InvalidStructure>> {
     let mut found = Found(Vec::new());
-    found.finite("gravity", &structure.gravity);
+    found.finite(format_args!("gravity"), &structure.gravity);
     for (i, body) in structure.bodies.iter().enumerate() {
-        found.at_least_zero(&format!("bodies[{i}].mass"), body.mass);
-        found.finite(&format!("bodies[{i}].com"), &body.com);
+        found.at_least_zero(format_args!("bodies[{i}].mass"), body.mass);
+        found.finite(format_args!("bodies[{i}].com"), &body.com);
     }
     for (i, connector) in structure.connectors.iter().enumerate() {
-        found.positive(&format!("connectors[{i}].strength"), connector.strength);
-        found.model(&format!("connectors[{i}].model"), &connector.model);
+        found.positive(format_args!("connectors[{i}].strength"), connector.strength);
+        found.model(format_args!("connectors[{i}].model"), &connector.model);
     }
     let bodies = structure.bodies.len();
     for (i, connection) in structure.connections.iter().enumerate() {
-        let place = format!("connections[{i}]");
-        found.anchor(&format!("{place}.parent"), connection.parent, bodies);
-        found.anchor(&format!("{place}.child"), connection.child, bodies);
-        found.require(connection.parent != connection.child, &place, "connects something to itself");
+        let place = format_args!("connections[{i}]");
+        found.anchor(format_args!("{place}.parent"), connection.parent, bodies);
+        found.anchor(format_args!("{place}.child"), connection.child, bodies);
+        found.require(connection.parent != connection.child, place, "connects something to itself");
         found.require(
             connection.connector < structure.connectors.len(),
-            &format!("{place}.connector"),
+            format_args!("{place}.connector"),
             "there is no such connector",
         );
-        found.finite(&format!("{place}.frame"), &connection.frame.translation.vector);
+        found.finite(format_args!("{place}.frame"), &connection.frame.translation.vector);
         let length = connection.frame.rotation.as_ref().norm();
-        found.require((length - 1.0).abs() <= UNIT, &format!("{place}.frame"), "the rotation is not a unit quaternion");
+        found.require(
+            (length - 1.0).abs() <= UNIT,
+            format_args!("{place}.frame"),
+            "the rotation is not a unit quaternion",
+        );
     }
     for (i, contact) in structure.contacts.iter().enumerate() {
-        let place = format!("contacts[{i}]");
-        found.anchor(&format!("{place}.body"), Anchor::Body(contact.body), bodies);
-        found.anchor(&format!("{place}.against"), contact.against, bodies);
-        found.require(contact.against != Anchor::Body(contact.body), &place, "a body touches itself");
-        found.finite(&format!("{place}.position"), &contact.position);
+        let place = format_args!("contacts[{i}]");
+        found.anchor(format_args!("{place}.body"), Anchor::Body(contact.body), bodies);
+        found.anchor(format_args!("{place}.against"), contact.against, bodies);
+        found.require(contact.against != Anchor::Body(contact.body), place, "a body touches itself");
+        found.finite(format_args!("{place}.position"), &contact.position);
         found.require(
             (contact.normal.norm() - 1.0).abs() <= UNIT,
-            &format!("{place}.normal"),
+            format_args!("{place}.normal"),
             "the normal is not a unit vector",
         );
-        found.at_least_zero(&format!("{place}.friction"), contact.friction);
+        found.at_least_zero(format_args!("{place}.friction"), contact.friction);
     }
     for (i, load) in structure.loads.iter().enumerate() {
-        let place = format!("loads[{i}]");
-        found.anchor(&format!("{place}.body"), Anchor::Body(load.body), bodies);
-        found.finite(&format!("{place}.force"), &load.force);
-        found.finite(&format!("{place}.torque"), &load.torque);
+        let place = format_args!("loads[{i}]");
+        found.anchor(format_args!("{place}.body"), Anchor::Body(load.body), bodies);
+        found.finite(format_args!("{place}.force"), &load.force);
+        found.finite(format_args!("{place}.torque"), &load.torque);
         if let Some(at) = &load.at {
-            found.finite(&format!("{place}.at"), at);
+            found.finite(format_args!("{place}.at"), at);
         }
     }
     if found.0.is_empty() { Ok(()) } else { Err(found.0) }
@@ -84,25 +90,25 @@ pub fn validate(structure: &Structure) -> Result<(), Vec<InvalidStructure>> {
 struct Found(Vec<InvalidStructure>);
 
 impl Found {
-    fn require(&mut self, holds: bool, place: &str, problem: &str) {
+    fn require(&mut self, holds: bool, place: Arguments<'_>, problem: &str) {
         if !holds {
-            self.0.push(InvalidStructure { place: place.to_owned(), problem: problem.to_owned() });
+            self.0.push(InvalidStructure { place: place.to_string(), problem: problem.to_owned() });
         }
     }
 
-    fn finite(&mut self, place: &str, vector: &Vec3) {
+    fn finite(&mut self, place: Arguments<'_>, vector: &Vec3) {
         self.require(vector.iter().all(|x| x.is_finite()), place, "is not finite");
     }
 
-    fn at_least_zero(&mut self, place: &str, value: f64) {
+    fn at_least_zero(&mut self, place: Arguments<'_>, value: f64) {
         self.require(value.is_finite() && value >= 0.0, place, "must be finite and not negative");
     }
 
-    fn positive(&mut self, place: &str, value: f64) {
+    fn positive(&mut self, place: Arguments<'_>, value: f64) {
         self.require(value.is_finite() && value > 0.0, place, "must be finite and positive");
     }
 
-    fn anchor(&mut self, place: &str, anchor: Anchor, bodies: usize) {
+    fn anchor(&mut self, place: Arguments<'_>, anchor: Anchor, bodies: usize) {
         let exists = match anchor {
             Anchor::World => true,
             Anchor::Body(i) => i < bodies,
@@ -110,14 +116,14 @@ impl Found {
         self.require(exists, place, "there is no such body");
     }
 
-    fn model(&mut self, place: &str, model: &Model) {
+    fn model(&mut self, place: Arguments<'_>, model: &Model) {
         match model {
             Model::Cone { friction, radius } => {
                 for mu in friction {
-                    self.positive(&format!("{place}.friction"), *mu);
+                    self.positive(format_args!("{place}.friction"), *mu);
                 }
                 for rho in radius {
-                    self.positive(&format!("{place}.radius"), *rho);
+                    self.positive(format_args!("{place}.radius"), *rho);
                 }
             }
             Model::Box { shear, tension, compression, bending, torsion } => {
@@ -125,16 +131,16 @@ impl Found {
                 let torques = [("bending", &bending[..]), ("torsion", &[*torsion])];
                 for (name, values) in limits.into_iter().chain(torques) {
                     let holds = values.iter().all(|limit| *limit >= 0.0);
-                    self.require(holds, &format!("{place}.{name}"), "a limit must not be negative");
+                    self.require(holds, format_args!("{place}.{name}"), "a limit must not be negative");
                 }
             }
             Model::Patch { friction, points } => {
-                self.at_least_zero(&format!("{place}.friction"), *friction);
+                self.at_least_zero(format_args!("{place}.friction"), *friction);
                 let finite = points.iter().flatten().all(|x| x.is_finite());
-                self.require(finite, &format!("{place}.points"), "is not finite");
+                self.require(finite, format_args!("{place}.points"), "is not finite");
                 self.require(
                     !finite || origin_in_hull(points),
-                    &format!("{place}.points"),
+                    format_args!("{place}.points"),
                     "the origin, where the preload acts, must lie in the convex hull of the points",
                 );
             }

@@ -273,7 +273,12 @@ fn units(family: &mut Family<'_>) {
 fn supports(family: &mut Family<'_>) {
     for depth in [1e-1, 1e-3, 1e-6, 1e-9] {
         for share in [0.0, 1e-3, 0.3, 0.999, 1.0, 1.001, -0.001, 5.0] {
-            family.add(format!("tripod {depth:e}, {share}"), move || tripod(depth, share));
+            // A nanometre in 0.2 m is beyond the solvers so far: undecided for some.
+            family.sized(
+                if depth < 1e-6 { Size::Large } else { Size::Small },
+                format!("tripod {depth:e}, {share}"),
+                move || tripod(depth, share),
+            );
             family.add_if_narrow(depth >= 1e-6, format!("pins {depth:e}, {share}"), move || pins(depth, share));
         }
         family.add(format!("seesaw {depth:e}"), move || seesaw(1.0, depth, 0.2, 0.5));

@@ -1,0 +1,187 @@
+//! What is remembered of a neighbour, laid out for this structure.
+
+use crate::spatial::{Twist, Vec3, Wrench};
+
+use super::super::assess::Knowledge;
+use super::super::assessment::{Assessment, Question};
+use super::super::blocks::{Block, Link, Vertex, ends};
+use super::super::bracket::Problem;
+use super::super::frame::LinkFrame;
+use super::super::loads::BodyLoad;
+use super::super::part::Part;
+use super::super::program::Program;
+use super::super::structure::Structure;
+use super::ladder::Ladder;
+use super::memory::{Held, Known, Memory, idle_links};
+
+/// Smallest force scale relative to the largest, as for a solve.
+const FLOOR: f64 = 1e-9;
+
+/// Carried fields, replaced by those of the answers as these are found.
+pub(super) struct Carried<'s> {
+    structure: &'s Structure,
+    question: Question,
+    /// Whether there is anything to carry.
+    any: bool,
+    /// Whether the neighbour fell, so that this one is likely to.
+    falls: bool,
+    links: Vec<Held>,
+    /// Twists of the neighbour's bodies in W; `None` where a body was not there.
+    before: Vec<Option<Twist>>,
+    /// Twists relative to the root of each body's block, where they are known.
+    relative: Vec<Option<Twist>>,
+    twists: Vec<Twist>,
+}
+
+impl<'s> Carried<'s> {
+    /// For a structure without a known neighbour.
+    pub(super) fn nothing(structure: &'s Structure, question: Question) -> Self {
+        let bodies = structure.bodies.len();
+        Self {
+            structure,
+            question,
+            any: false,
+            falls: false,
+            links: idle_links(structure),
+            before: vec![None; bodies],
+            relative: vec![None; bodies],
+            twists: vec![Twist::ZERO; bodies],
+        }
+    }
+
+    /// `matching` must fit `memory`.
+    pub(super) fn new(
+        structure: &'s Structure,
+        question: Question,
+        memory: &Memory,
+        matching: &[Option<usize>],
+    ) -> Self {
+        let bodies = structure.bodies.len();
+        let threshold = match question {
+            Question::Decide(threshold) => threshold,
+            Question::ToGap(_) => 1.0,
+        };
+        Self {
+            structure,
+            question,
+            // Fields of a state that no strength holds say nothing about strength.
+            any: memory.utilisation.lower < f64::INFINITY,
+            falls: memory.utilisation.lower > threshold,
+            links: memory.links(structure, matching),
+            before: memory.twists(structure, matching),
+            relative: vec![None; bodies],
+            twists: vec![Twist::ZERO; bodies],
+        }
+    }
+
+    /// What a neighbour of this structure can use, now that it is answered.
+    pub(super) fn into_memory(self, answer: &Assessment) -> Memory {
+        let bodies = self.structure.bodies.iter().zip(&self.twists);
+        let bodies = bodies.map(|(body, twist)| Known { com: body.com, twist: *twist }).collect();
+        Memory { utilisation: answer.utilisation, bodies, links: self.links }
+    }
+
+    fn slot(&self, link: Link) -> usize {
+        match link {
+            Link::Connection(i) => i,
+            Link::Contact(i) => self.structure.connections.len() + i,
+        }
+    }
+
+    /// The motion of a block's root and where it is.
+    fn root(&self, block: &Block, twist: impl Fn(usize) -> Twist) -> (Twist, Vec3) {
+        match block.root {
+            Vertex::Ground => (Twist::ZERO, Vec3::zeros()),
+            Vertex::Body(i) => (twist(i), self.structure.bodies[i].com),
+        }
+    }
+
+    /// The carried twists of a block's bodies relative to its root; `None` when
+    /// nothing moves.
+    fn motion(&self, block: &Block) -> Option<Vec<Twist>> {
+        let (root, at) = self.root(block, |i| self.before[i].unwrap_or(Twist::ZERO));
+        let mut twists: Vec<Option<Twist>> = Vec::with_capacity(block.bodies.len());
+        for &body in &block.bodies {
+            let with = root.moved(&(self.structure.bodies[body].com - at));
+            twists.push(self.before[body].map(|v| Twist::new(v.linear - with.linear, v.angular - with.angular)));
+        }
+        self.move_with_neighbours(block, &mut twists);
+        let twists: Vec<Twist> = twists.into_iter().map(|twist| twist.unwrap_or(Twist::ZERO)).collect();
+        twists.iter().any(|twist| *twist != Twist::ZERO).then_some(twists)
+    }
+
+    /// Lets a body that was not there move with one that it is linked to.
+    fn move_with_neighbours(&self, block: &Block, twists: &mut [Option<Twist>]) {
+        let mut unknown = twists.iter().filter(|twist| twist.is_none()).count();
+        while unknown > 0 {
+            let left = unknown;
+            for &link in &block.links {
+                let local = ends(self.structure, link).map(|end| match end {
+                    Vertex::Body(i) if end != block.root => block.bodies.binary_search(&i).ok(),
+                    _ => None,
+                });
+                for (from, to) in [(local[0], local[1]), (local[1], local[0])] {
+                    if let (Some(to), None) = (to, to.and_then(|to| twists[to])) {
+                        let arm = |i: usize| {
+                            let com = |local: usize| self.structure.bodies[block.bodies[local]].com;
+                            com(to) - com(i)
+                        };
+                        let host = from.map_or(Some(Twist::ZERO), |from| Some(twists[from]?.moved(&arm(from))));
+                        if host.is_some() {
+                            twists[to] = host;
+                            unknown -= 1;
+                        }
+                    }
+                }
+            }
+            if unknown == left {
+                break;
+            }
+        }
+    }
+}
+
+impl Knowledge for Carried<'_> {
+    fn bound(&mut self, structure: &Structure, block: &Block, loads: &[BodyLoad]) -> Option<Part> {
+        if !self.any || block.bodies.iter().all(|&body| loads[body].is_zero()) {
+            return None;
+        }
+        let program = Program::unstated(structure, block, loads, FLOOR);
+        let in_frame = |(&link, frame): (&Link, &LinkFrame)| {
+            let wrench = &self.links[self.slot(link)].wrench;
+            Wrench::new(frame.axes.tr_mul(&wrench.force), frame.axes.tr_mul(&wrench.torque))
+        };
+        let field = block.links.iter().zip(&program.frames).map(in_frame).collect();
+        let problem = Problem { structure, block, loads, program: &program };
+        Some(Ladder::new(problem, self.question).climb(self.motion(block), field, self.falls))
+    }
+
+    fn note(&mut self, block: &Block, part: &Part) {
+        let (mechanism, wrenches) = match part {
+            Part::Collapses { mechanism, .. } => (Some(mechanism), None),
+            Part::Stands { utilisation, mechanism, wrenches, .. } => {
+                ((utilisation.lower > 0.0).then_some(mechanism), utilisation.upper.is_finite().then_some(wrenches))
+            }
+        };
+        for (&body, twist) in block.bodies.iter().zip(mechanism.into_iter().flatten()) {
+            self.relative[body] = Some(*twist);
+        }
+        for (&link, wrench) in block.links.iter().zip(wrenches.into_iter().flatten()) {
+            let (axes, slot) = (LinkFrame::new(self.structure, link).axes, self.slot(link));
+            self.links[slot].wrench = Wrench::new(axes * wrench.force, axes * wrench.torque);
+        }
+    }
+
+    fn close(&mut self, blocks: &[Block]) {
+        for block in blocks {
+            let silent = block.links.len() > 1 && block.bodies.iter().any(|&body| self.relative[body].is_none());
+            let carried = if silent { self.motion(block) } else { None };
+            let (root, at) = self.root(block, |i| self.twists[i]);
+            for (k, &body) in block.bodies.iter().enumerate() {
+                let with = root.moved(&(self.structure.bodies[body].com - at));
+                let own = self.relative[body].or_else(|| Some(carried.as_ref()?[k])).unwrap_or(Twist::ZERO);
+                self.twists[body] = Twist::new(with.linear + own.linear, with.angular + own.angular);
+            }
+        }
+    }
+}

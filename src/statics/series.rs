@@ -1,0 +1,72 @@
+//! Springs in series, as triangles: `R'R = sum B'B` one spring after another, by
+//! reflections, so that nothing is squared.
+
+use nalgebra::{Matrix6, Vector6};
+
+/// The reflections that bring `[R; B]`, R an upper triangle, to a triangle again.
+pub(super) struct Stacked {
+    /// Per column: the reflection's vector in R's row, in B's rows, and its factor.
+    head: [f64; 6],
+    tail: [Vector6<f64>; 6],
+    factor: [f64; 6],
+}
+
+impl Stacked {
+    /// Stacks `rows` under `triangle`, which becomes that of both.
+    pub(super) fn new(triangle: &mut Matrix6<f64>, mut rows: Matrix6<f64>) -> Self {
+        let mut stacked = Self { head: [0.0; 6], tail: [Vector6::zeros(); 6], factor: [0.0; 6] };
+        for k in 0..6 {
+            let (pivot, below) = (triangle[(k, k)], rows.column(k).into_owned());
+            let length = pivot.hypot(below.norm());
+            if length == 0.0 {
+                continue;
+            }
+            // Away from the pivot's own sign nothing cancels.
+            let turned = if pivot > 0.0 { -length } else { length };
+            let head = pivot - turned;
+            let factor = -(turned * head).recip();
+            triangle[(k, k)] = turned;
+            for c in k + 1..6 {
+                let along = (head * triangle[(k, c)] + below.dot(&rows.column(c))) * factor;
+                triangle[(k, c)] -= along * head;
+                rows.column_mut(c).axpy(-along, &below, 1.0);
+            }
+            (stacked.head[k], stacked.tail[k], stacked.factor[k]) = (head, below, factor);
+        }
+        stacked
+    }
+
+    /// The rows of the triangle in `Q' [top; bottom]`.
+    pub(super) fn reduce(&self, mut top: Vector6<f64>, mut bottom: Vector6<f64>) -> Vector6<f64> {
+        for k in 0..6 {
+            let along = (self.head[k] * top[k] + self.tail[k].dot(&bottom)) * self.factor[k];
+            top[k] -= along * self.head[k];
+            bottom.axpy(-along, &self.tail[k], 1.0);
+        }
+        top
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn matrix(seed: usize) -> Matrix6<f64> {
+        Matrix6::from_fn(|r, c| ((seed * 7 + r * 13 + c * 5 + r * c) % 11) as f64 - 5.0)
+    }
+
+    #[test]
+    fn squares_add_up_and_least_squares_are_solved() {
+        let mut triangle = Matrix6::zeros();
+        let (mut squares, mut mixed, mut reduced) = (Matrix6::zeros(), Vector6::zeros(), Vector6::zeros());
+        for n in 0..5 {
+            let (rows, wanted) = (matrix(n), matrix(n + 20).column(1).into_owned());
+            squares += rows.tr_mul(&rows);
+            mixed += rows.tr_mul(&wanted);
+            reduced = Stacked::new(&mut triangle, rows).reduce(reduced, wanted);
+        }
+        assert!((triangle.tr_mul(&triangle) - squares).norm() < 1e-12 * squares.norm());
+        assert!((triangle.tr_mul(&reduced) - mixed).norm() < 1e-12 * mixed.norm());
+        assert_eq!(triangle, triangle.upper_triangle());
+    }
+}
