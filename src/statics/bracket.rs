@@ -50,7 +50,13 @@ impl Problem<'_> {
             if !holds {
                 return None;
             }
-            charge += twists.map_or(0.0, |twists| twists[i].power(lacking).abs());
+            // The imbalance is known up to rounding only, which a nearly singular
+            // support multiplies as it does the imbalance.
+            let (unknown, lever) = (ROUNDING * through[i], program.scales.lever[i]);
+            charge += twists.map_or(0.0, |twists| {
+                let v = &twists[i];
+                v.power(lacking).abs() + (v.linear.norm() + v.angular.norm() * lever) * unknown
+            });
         }
         let mut demands = Vec::with_capacity(field.len());
         for (l, (&link, wrench)) in block.links.iter().zip(field).enumerate() {

@@ -93,14 +93,16 @@ impl<'p> InteriorPoint<'p> {
             link: 0,
             form: Form::Slack,
             scale: 1.0,
+            rest: START,
             tie_row: None,
             ties: None,
         });
         let (mut cost, mut x, mut s) = (vec![0.0; size], vec![0.0; size], vec![0.0; size]);
+        // No wrench anywhere, and the same complementarity in every cone.
         for group in groups.iter().filter(|group| group.cone != Cone::Free) {
             cost[group.first] = -inset / heads;
-            x[group.first] = START;
-            s[group.first] = START;
+            x[group.first] = group.rest.max(START);
+            s[group.first] = START / x[group.first];
         }
         cost[size - 1] = 1.0;
         let wanted = program.load.iter().map(|load| -load).collect();

@@ -29,6 +29,7 @@ mod frame;
 mod hull;
 mod interior_point;
 mod loads;
+mod lowered;
 mod maps;
 mod near;
 mod network;

@@ -61,6 +61,9 @@ pub(super) struct Group {
     pub form: Form,
     /// Force in N that a scaled variable of 1 stands for.
     pub scale: f64,
+    /// The first variable where the link carries nothing at the typical utilisation:
+    /// its strength, scaled.
+    pub rest: f64,
     /// The row that ties this variable to another slack of the same component.
     pub tie_row: Option<usize>,
     /// For a slack that only ties a box component: the variable it belongs to.
@@ -154,12 +157,18 @@ pub(super) struct Program {
     /// Whether each link, if strong enough, holds its two bodies to each other in
     /// every direction.
     pub rigid: Vec<bool>,
+    /// Share of its strength that each link may use.
+    shares: Vec<f64>,
 }
+
+/// Smallest force scale of a body, relative to the largest: a body without weight
+/// still needs one.
+const FLOOR: f64 = 1e-9;
 
 impl Program {
     /// The program scaled to each body's own forces, however small.
     pub(super) fn new(structure: &Structure, block: &Block, loads: &[BodyLoad], purpose: Purpose) -> Self {
-        Self::with_floor(structure, block, loads, purpose, 1e-9)
+        Self::with_floor(structure, block, loads, purpose, FLOOR)
     }
 
     /// The program with no body's force scale below `floor` times the largest.
@@ -170,8 +179,19 @@ impl Program {
         purpose: Purpose,
         floor: f64,
     ) -> Self {
-        let mut program = Self { purpose, ..Self::unstated(structure, block, loads, floor) };
-        match purpose {
+        Self { purpose, ..Self::unstated(structure, block, loads, floor) }.stated(structure, block)
+    }
+
+    /// The program in which each link may use a share of its strength only: what it
+    /// proves possible is possible.
+    pub(super) fn with_shares(structure: &Structure, block: &Block, loads: &[BodyLoad], shares: Vec<f64>) -> Self {
+        Self { shares, ..Self::unstated(structure, block, loads, FLOOR) }.stated(structure, block)
+    }
+
+    /// With the variables of every link.
+    fn stated(self, structure: &Structure, block: &Block) -> Self {
+        let mut program = self;
+        match program.purpose {
             Purpose::Utilisation => program.t_scale = program.typical_utilisation(structure, block),
             Purpose::Support => program.preload = program.load.iter().map(|load| -load).collect(),
         }
@@ -223,6 +243,7 @@ impl Program {
             frames,
             coms: block.bodies.iter().map(|&body| structure.bodies[body].com).collect(),
             rigid,
+            shares: vec![1.0; block.links.len()],
         }
     }
 
@@ -242,7 +263,10 @@ impl Program {
     /// Largest of force over strength: about the utilisation to expect.
     fn typical_utilisation(&self, structure: &Structure, block: &Block) -> f64 {
         let ratios = block.links.iter().zip(&self.scales.link).filter_map(|(link, force)| match link {
-            Link::Connection(i) => Some(force / structure.connectors[structure.connections[*i].connector].strength),
+            Link::Connection(i) => {
+                let connector = &structure.connectors[structure.connections[*i].connector];
+                Some(force * leverage(&connector.model) / connector.strength)
+            }
             Link::Contact(_) => None,
         });
         let largest = ratios.fold(0.0, f64::max);
@@ -250,24 +274,27 @@ impl Program {
     }
 
     fn add_link(&mut self, structure: &Structure, index: usize, link: Link) {
-        let force = self.scales.link[index];
+        let (force, share) = (self.scales.link[index], self.shares[index]);
         match link {
             Link::Contact(i) => {
                 self.add_friction_cone(index, structure.contacts[i].friction, [0.0; 2], force);
             }
             Link::Connection(i) => {
                 let connector = &structure.connectors[structure.connections[i].connector];
+                let strength = connector.strength * share;
                 match &connector.model {
                     Model::Cone { friction: [a, b], radius: [c, d, e] } => {
                         let axes = [(2, 1.0), (0, *a), (1, *b), (3, *c), (4, *d), (5, *e)];
                         self.add_group(index, Cone::Lorentz, Form::Axes(axes), 6, force);
-                        self.add_preload(index, Wrench::new(-Vec3::z() * connector.strength, Vec3::zeros()));
+                        self.rest_at(strength);
+                        self.add_preload(index, Wrench::new(-Vec3::z() * strength, Vec3::zeros()));
                     }
                     Model::Patch { friction, points } => {
                         for &point in points {
                             self.add_friction_cone(index, *friction, point, force);
+                            self.rest_at(strength / points.len() as f64);
                         }
-                        self.add_preload(index, Wrench::new(-Vec3::z() * connector.strength, Vec3::zeros()));
+                        self.add_preload(index, Wrench::new(-Vec3::z() * strength, Vec3::zeros()));
                     }
                     Model::Box { shear, tension, compression, bending, torsion } => {
                         let limits = [
@@ -278,7 +305,7 @@ impl Program {
                             (bending[1], bending[1]),
                             (*torsion, *torsion),
                         ];
-                        self.add_box(index, &limits);
+                        self.add_box(index, &limits.map(|(opening, closing)| (opening * share, closing * share)));
                     }
                 }
             }
@@ -307,17 +334,21 @@ impl Program {
                 }
                 (true, false) => {
                     self.add_group(link, Cone::NonNegative, along(1.0), 1, scale);
+                    self.rest_at(negative);
                     preload[component] -= negative;
                 }
                 (false, true) => {
                     self.add_group(link, Cone::NonNegative, along(-1.0), 1, scale);
+                    self.rest_at(positive);
                     preload[component] += positive;
                 }
                 (true, true) if negative == 0.0 && positive == 0.0 => {}
                 (true, true) => {
                     let slack = self.add_group(link, Cone::NonNegative, along(1.0), 1, scale);
+                    self.rest_at(negative);
                     preload[component] -= negative;
                     self.tie(link, slack, scale, negative + positive);
+                    self.rest_at(positive);
                 }
             }
         }
@@ -338,7 +369,8 @@ impl Program {
         (other.tie_row, other.ties) = (Some(row), Some(slack));
     }
 
-    fn lever_of(&self, link: usize) -> f64 {
+    /// Longest lever of a link's bodies.
+    pub(super) fn lever_of(&self, link: usize) -> f64 {
         self.sides[link].iter().flatten().map(|side| self.scales.lever[side.body]).fold(0.0, f64::max)
     }
 
@@ -346,8 +378,15 @@ impl Program {
     fn add_group(&mut self, link: usize, cone: Cone, form: Form, len: usize, scale: f64) -> usize {
         let first = self.variables;
         self.variables += len;
-        self.groups.push(Group { cone, first, len, link, form, scale, tie_row: None, ties: None });
+        self.groups.push(Group { cone, first, len, link, form, scale, rest: 0.0, tie_row: None, ties: None });
         first
+    }
+
+    /// Says at what `strength` the group just added rests.
+    fn rest_at(&mut self, strength: f64) {
+        if let (Purpose::Utilisation, Some(group)) = (self.purpose, self.groups.last_mut()) {
+            group.rest = strength * self.t_scale / group.scale;
+        }
     }
 
     fn add_preload(&mut self, link: usize, local: Wrench) {
@@ -384,6 +423,15 @@ impl Program {
         entries.extend(group.tie_row.map(|row| (row, 1.0)));
         entries.retain(|entry| entry.1 != 0.0);
         entries
+    }
+}
+
+/// Strength that a unit of force demands in the direction in which that is most.
+fn leverage(model: &Model) -> f64 {
+    match model {
+        Model::Cone { friction, .. } => friction.iter().map(|mu| 1.0 / mu).fold(1.0, f64::max),
+        Model::Patch { friction, .. } if *friction > 0.0 => (1.0 / friction).max(1.0),
+        Model::Box { .. } | Model::Patch { .. } => 1.0,
     }
 }
 

@@ -12,6 +12,7 @@ use super::collapse;
 use super::conic::{self, Attempt, Iterate};
 use super::interior_point::InteriorPoint;
 use super::loads::BodyLoad;
+use super::lowered::Lowered;
 use super::part::Part;
 use super::program::{Program, Purpose, local_body};
 use super::rung::Rung;
@@ -50,6 +51,12 @@ const ATTEMPTS: [Attempt; 6] = [
     Attempt { tolerance: 1e-12, inset: 0.0, regularization: 1e-10 },
 ];
 
+/// Inset that bounds the forces of parts that clamp themselves tightly.
+const CLAMPED: f64 = -1e-4;
+
+/// Rounds of lowering strengths that are not needed.
+const LOWERINGS: usize = 6;
+
 /// Ways of asking for a mechanism of fused clusters.
 const FUSED_ATTEMPTS: [Attempt; 2] = [
     Attempt { tolerance: 1e-9, inset: 1e-8, regularization: 1e-8 },
@@ -86,12 +93,21 @@ pub(super) fn assess_block(structure: &Structure, block: &Block, loads: &[BodyLo
     // Where supports face each other, begin with the attempt that bounds forces.
     let first = usize::from(faces_itself(&problem));
     let inset = ATTEMPTS[first].inset;
-    let rung = best.iterate(&problem, inset, question);
+    let mut rung = best.iterate(&problem, inset, question);
+    for inset in [-inset, CLAMPED] {
+        if best.answers(question) {
+            break;
+        }
+        rung = best.iterate(&problem, inset, question);
+    }
     if best.upper.is_infinite()
         && !best.answers(question)
         && let Some(mechanism) = collapse::find(structure, block, loads)
     {
         return Part::Collapses { mechanism, decided_by: Rung::Solved };
+    }
+    if !best.answers(question) {
+        best.lower_strengths(&problem, inset, question);
     }
     let rung = if best.answers(question) { rung } else { Rung::SolvedGenerally };
     for attempt in ATTEMPTS[first..].iter().chain(&ATTEMPTS[..first]) {
@@ -292,6 +308,31 @@ impl Best {
         }
     }
 
+    /// Asks again with the strengths that are not needed lowered, and with the
+    /// bodies that they join moving as one.
+    fn lower_strengths(&mut self, problem: &Problem<'_>, inset: f64, question: Question) {
+        let Problem { structure, block, loads, program } = *problem;
+        let mut lowered = Lowered::new(structure, block, program);
+        for _ in 0..LOWERINGS {
+            let t = self.upper.min(program.t_scale);
+            let shares = lowered.shares(t);
+            if shares.iter().all(|share| *share == 1.0) {
+                return;
+            }
+            let program = Program::with_shares(structure, block, loads, shares.clone());
+            let problem = Problem { program: &program, ..*problem };
+            self.iterate(&problem, inset, question);
+            if self.answers(question) || !self.upper.is_finite() {
+                return;
+            }
+            let idle = |link: usize| shares[link] < 1.0 && self.demands[link] < shares[link] * self.upper;
+            self.move_as_one(&problem, &Clusters::new(structure, block, |link, _| idle(link)), question);
+            if self.answers(question) || !(lowered.raise(&shares, &self.demands, self.upper) || self.upper < 0.5 * t) {
+                return;
+            }
+        }
+    }
+
     /// Lets bodies that hardly move against each other in `twists` move as one,
     /// and asks for the best mechanism of that kind. Parts that are clamped by
     /// their own stress have no admissible motion but rest: there the solver's
@@ -302,30 +343,35 @@ impl Best {
         let power: f64 = block.bodies.iter().zip(twists).map(|(&body, v)| v.power(&loads[body].wrench)).sum();
         for share in FUSED {
             let clusters = Clusters::new(structure, block, |link, _| powers[link] <= share * power);
-            let Some(reduced) = clusters.reduce(structure, block, loads) else { return };
-            let program = Program::new(&reduced.structure, &reduced.block, &reduced.loads, Purpose::Utilisation);
-            let inner = Problem {
-                structure: &reduced.structure,
-                block: &reduced.block,
-                loads: &reduced.loads,
-                program: &program,
-            };
-            for attempt in &FUSED_ATTEMPTS {
-                let Some(iterate) = conic::solve(&program, attempt) else { continue };
-                let twists = program.twists(&iterate.v);
-                if let Some((lower, inner_shares)) = inner.lower_bound(&twists)
-                    && lower > self.lower
-                {
-                    self.lower = lower;
-                    self.mechanism = clusters.spread(structure, block, &reduced, &twists);
-                    self.shares = vec![0.0; block.links.len()];
-                    for (&origin, share) in reduced.origins.iter().zip(inner_shares) {
-                        self.shares[origin] = share;
-                    }
+            self.move_as_one(problem, &clusters, question);
+            if self.answers(question) {
+                return;
+            }
+        }
+    }
+
+    /// Keeps the best mechanism in which each of `clusters` moves as one.
+    fn move_as_one(&mut self, problem: &Problem<'_>, clusters: &Clusters, question: Question) {
+        let Problem { structure, block, loads, .. } = *problem;
+        let Some(reduced) = clusters.reduce(structure, block, loads) else { return };
+        let program = Program::new(&reduced.structure, &reduced.block, &reduced.loads, Purpose::Utilisation);
+        let inner =
+            Problem { structure: &reduced.structure, block: &reduced.block, loads: &reduced.loads, program: &program };
+        for attempt in &FUSED_ATTEMPTS {
+            let Some(iterate) = conic::solve(&program, attempt) else { continue };
+            let twists = program.twists(&iterate.v);
+            if let Some((lower, inner_shares)) = inner.lower_bound(&twists)
+                && lower > self.lower
+            {
+                self.lower = lower;
+                self.mechanism = clusters.spread(structure, block, &reduced, &twists);
+                self.shares = vec![0.0; block.links.len()];
+                for (&origin, share) in reduced.origins.iter().zip(inner_shares) {
+                    self.shares[origin] = share;
                 }
-                if self.answers(question) {
-                    return;
-                }
+            }
+            if self.answers(question) {
+                return;
             }
         }
     }

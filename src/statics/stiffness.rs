@@ -16,6 +16,9 @@ pub(super) type Matrix = [[f64; 6]; 6];
 /// below that is rounding.
 const LEAST_PIVOT: f64 = 1e-14;
 
+/// Pivot root that stands for infinity.
+const AT_REST: f64 = 1e100;
+
 /// A symmetric block matrix on the bodies of a graph, then its Cholesky factor.
 pub(super) struct Stiffness {
     /// Position of each body in the order of elimination.
@@ -209,7 +212,8 @@ fn least_degree(bodies: usize, pairs: impl Iterator<Item = (usize, usize)>) -> (
 /// Overwrites the lower triangle with the Cholesky factor.
 fn cholesky(matrix: &mut Matrix, least: &[f64; 6]) {
     for c in 0..6 {
-        let root = matrix[c][c].max(least[c]).sqrt();
+        // Nothing but rounding is left: let this component rest (Wright 1999).
+        let root = if matrix[c][c] > least[c] { matrix[c][c].sqrt() } else { AT_REST };
         matrix[c][c] = root;
         for entry in &mut matrix[c][c + 1..] {
             *entry /= root;
