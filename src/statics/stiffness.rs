@@ -14,7 +14,7 @@ pub(super) type Matrix = [[f64; 6]; 6];
 
 /// Least pivot, as a share of the diagonal entry it came from: what is left
 /// below that is rounding.
-const LEAST_PIVOT: f64 = 1e-14;
+const LEAST_PIVOT: f64 = 1e-16;
 
 /// Pivot root that stands for infinity.
 const AT_REST: f64 = 1e100;
