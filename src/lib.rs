@@ -42,9 +42,10 @@
 //! # Layers
 //!
 //! Each uses only what stands before it: [`spatial`] (poses, wrenches, twists),
-//! [`statics`] (the oracle), [`robot`] (module types, configurations), [`geometry`]
-//! (contacts and sweeps), [`reconfigure`] (actions, transient states, plans), [`io`]
-//! (files). The search engines are the package `planners`, which knows no robots.
+//! [`statics`] (the oracle), [`certificate`] (proofs of its answers and their checker),
+//! [`robot`] (module types, configurations), [`geometry`] (contacts and sweeps),
+//! [`reconfigure`] (actions, transient states, plans), [`io`] (files). The search
+//! engines are the package `planners`, which knows no robots.
 //!
 //! # Asking the oracle
 //!
@@ -139,6 +140,7 @@
 //! are checked on samples (at most 15 degrees or an eighth of a cell apart, refined
 //! around the worst), not between them. Only cubes in a lattice are planned for.
 
+pub mod certificate;
 pub mod geometry;
 pub mod io;
 pub mod reconfigure;

@@ -152,6 +152,54 @@ fn a_plan_against_itself_does_not_verify() {
 }
 
 #[test]
+fn what_is_certified_verifies_and_nothing_else() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("certificate.json");
+    let file = path.to_str().unwrap();
+    let cases = [
+        ("structures/suspension_76.json", 0, "VERIFIED: stable, utilisation between 0.7007"),
+        ("structures/cantilever_box_3.json", 10, "VERIFIED: internally unstable, utilisation between "),
+        ("structures/overhang_out.json", 10, "VERIFIED: whole-body unstable, no strength of the connections helps"),
+        ("valid/configuration.json", 0, "VERIFIED: stable, utilisation between "),
+    ];
+    for (checked, code, expected) in cases {
+        let report = plan(&["check", checked, "--certificate", file, "--json"]);
+        assert_eq!(report.status.code(), Some(code), "{checked}");
+        assert!(serde_json::from_slice::<serde_json::Value>(&report.stdout).unwrap()["format"] == "check/1");
+        let verified = plan(&["verify", file]);
+        assert_eq!(verified.status.code(), Some(0), "{checked}");
+        assert!(stdout(&verified).starts_with(expected), "{checked}: {}", stdout(&verified));
+    }
+    let report = plan(&["check", "structures/hang_one.json", "--certificate", "no/such/directory/certificate.json"]);
+    assert_eq!(report.status.code(), Some(30));
+}
+
+#[test]
+fn a_false_certificate_is_told_where_it_is_wrong() {
+    use steadfast::certificate::Carried;
+    use steadfast::io::{SourceFile, read_certificate, write_certificate};
+    let text = std::fs::read(problems::root().join("valid/certificate.json")).unwrap();
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("certificate.json");
+    let mut document = read_certificate(&SourceFile::new("valid", text.clone())).unwrap();
+    let Carried::Wrench(wrench) = &mut document.certificate.stress.as_mut().unwrap().connections[0] else {
+        panic!("a magnet carries a wrench")
+    };
+    wrench.force.z += 0.5;
+    std::fs::write(&path, write_certificate(&document).unwrap()).unwrap();
+    let output = plan(&["verify", path.to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(10));
+    let shown = stdout(&output);
+    assert!(shown.starts_with("NOT VERIFIED\n  body ") && shown.contains(" lacks "), "{shown}");
+
+    let damaged = String::from_utf8(text).unwrap().replacen("force_n\": [", "force_n\": [1", 1);
+    std::fs::write(&path, damaged).unwrap();
+    let output = plan(&["verify", path.to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(30));
+    assert!(String::from_utf8(output.stderr).unwrap().contains("error[E045]"));
+}
+
+#[test]
 fn standard_input_is_a_file_too() {
     let text = std::fs::read(PathBuf::from(problems::root()).join("structures/hang_one.json")).unwrap();
     let mut child = Command::new(env!("CARGO_BIN_EXE_plan"))

@@ -6,10 +6,11 @@ use std::path::{Path, PathBuf};
 
 use libtest_mimic::{Arguments, Failed, Trial};
 use steadfast::io::{
-    Diagnostics, SourceFile, no_references, read_catalogue, read_configuration, read_plan, read_problem, read_structure,
+    Diagnostics, SourceFile, no_references, read_catalogue, read_certificate, read_configuration, read_plan,
+    read_problem, read_structure,
 };
 
-const KINDS: [&str; 5] = ["structure", "catalogue", "configuration", "goal", "plan"];
+const KINDS: [&str; 6] = ["structure", "catalogue", "configuration", "goal", "plan", "certificate"];
 
 fn main() {
     let mut trials = Vec::new();
@@ -50,6 +51,7 @@ fn read(kind: &str, file: &SourceFile) -> Result<(), Diagnostics> {
         "catalogue" => read_catalogue(file).map(drop),
         "configuration" => read_configuration(file, &references).map(drop),
         "plan" => read_plan(file).map(drop),
+        "certificate" => read_certificate(file).map(drop),
         _ => {
             let start = SourceFile::new("start.json", include_bytes!("../problems/malformed/start.json"));
             read_problem(&start, file, &no_references).map(drop)

@@ -2,11 +2,11 @@
 //! is accepted must be written and read back equal.
 
 use steadfast::io::{
-    SourceFile, no_references, read_catalogue, read_configuration, read_plan, read_problem, read_structure,
-    write_configuration, write_plan, write_structure,
+    SourceFile, no_references, read_catalogue, read_certificate, read_configuration, read_plan, read_problem,
+    read_structure, write_certificate, write_configuration, write_plan, write_structure,
 };
 
-/// Mutations of each of the five kinds of file.
+/// Mutations of each of the six kinds of file.
 const ROUNDS: u64 = 20_000;
 
 /// Marsaglia's xorshift: small, and the same everywhere.
@@ -148,6 +148,16 @@ fn plans() {
         let plan = read_plan(file).map_err(|e| e.to_string())?;
         let text = write_plan(&plan).unwrap();
         assert_eq!(read_plan(&SourceFile::new("again", text)), Ok(plan));
+        Ok(())
+    });
+}
+
+#[test]
+fn certificates() {
+    damage("certificate.json", 0x1656_67b1, |file| {
+        let certificate = read_certificate(file).map_err(|e| e.to_string())?;
+        let text = write_certificate(&certificate).unwrap();
+        assert_eq!(read_certificate(&SourceFile::new("again", text)), Ok(certificate));
         Ok(())
     });
 }

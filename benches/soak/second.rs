@@ -28,7 +28,7 @@ pub fn opinion(structure: &Structure) -> Opinion {
     let mut last = None;
     for answer in answers {
         match (answer, last) {
-            (Answer::GaveUp, _) => return Opinion::None,
+            (Answer::GaveUp(_), _) => return Opinion::None,
             (Answer::Utilisation(t), Some(Answer::Utilisation(before))) => {
                 if !((t - before).abs() <= SAME * t.max(1.0)) {
                     return Opinion::None;
@@ -42,7 +42,7 @@ pub fn opinion(structure: &Structure) -> Opinion {
     match last {
         Some(Answer::Utilisation(t)) => Opinion::Utilisation(t),
         Some(Answer::Infeasible) => Opinion::Infeasible,
-        Some(Answer::GaveUp) | None => Opinion::None,
+        Some(Answer::GaveUp(_)) | None => Opinion::None,
     }
 }
 

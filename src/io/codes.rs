@@ -62,6 +62,9 @@ codes! {
     START_AND_GOAL = "E043" "start-and-goal";
     PLAN = "E044" "plan";
 
+    // A certificate against its checksum.
+    CHECKSUM = "E045" "checksum";
+
     // What is well said, but not what the planner or the oracle takes.
     REFUSED = "E050" "refused";
 }

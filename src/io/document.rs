@@ -1,5 +1,7 @@
 //! What files mean, once read: core types with the names that the file gave.
 
+use super::certificate_document::CertificateDocument;
+use super::plan_document::PlanDocument;
 use crate::robot::{Configuration, Goal};
 use crate::statics::Structure;
 
@@ -71,4 +73,13 @@ pub enum Checkable {
     Structure(NamedStructure),
     /// A robot in its environment.
     Configuration(Configuration),
+}
+
+/// What `plan verify` can look at.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Verifiable {
+    /// A plan with its problem.
+    Plan(Box<PlanDocument>),
+    /// A certificate with its structure.
+    Certificate(Box<CertificateDocument>),
 }

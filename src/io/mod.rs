@@ -10,6 +10,7 @@
 //! (`read`), and what the core types find unsound (`read::faults`).
 
 mod assembled;
+mod certificate_document;
 mod codes;
 mod conform;
 mod diagnostics;
@@ -26,11 +27,15 @@ mod turn;
 mod wire;
 mod write;
 
+pub use certificate_document::CertificateDocument;
 pub use codes::{CODES, Code};
 pub use diagnostics::{Diagnostic, Diagnostics};
-pub use document::{Checkable, LARGEST_FILE, NamedStructure, Problem, Resolve, SourceFile, no_references};
+pub use document::{Checkable, LARGEST_FILE, NamedStructure, Problem, Resolve, SourceFile, Verifiable, no_references};
 pub use plan_document::{Contradiction, PlanDocument};
-pub use read::{read_catalogue, read_checkable, read_configuration, read_plan, read_problem, read_structure};
+pub use read::{
+    read_catalogue, read_certificate, read_checkable, read_configuration, read_plan, read_problem, read_structure,
+    read_verifiable,
+};
 pub use schema::{schema, schema_names};
 pub use turn::AxisAngle;
-pub use write::{Unwritable, write_check, write_configuration, write_plan, write_structure};
+pub use write::{Unwritable, write_certificate, write_check, write_configuration, write_plan, write_structure};

@@ -9,15 +9,16 @@ use serde_json::Value;
 use super::{layout, wire};
 
 /// The formats that have a schema.
-const NAMES: [&str; 6] = ["structure", "catalogue", "configuration", "plan", "check", "errors"];
+const NAMES: [&str; 7] = ["structure", "catalogue", "configuration", "plan", "check", "certificate", "errors"];
 
-static SCHEMAS: LazyLock<[Value; 6]> = LazyLock::new(|| {
+static SCHEMAS: LazyLock<[Value; 7]> = LazyLock::new(|| {
     [
         generate::<wire::Structure>(),
         generate::<wire::Catalogue>(),
         generate::<wire::Configuration>(),
         generate::<wire::Plan>(),
         generate::<wire::Check>(),
+        generate::<wire::Certificate>(),
         generate::<wire::Errors>(),
     ]
 });

@@ -5,7 +5,7 @@ use crate::spatial::{Twist, Vec3, Wrench};
 
 use super::assessment::{Assessment, Bracket, ConnectionState, LeftOut, Question, Verdict};
 use super::blocks::{Block, Blocks, Link, Vertex, cut};
-use super::closed_form::assess_bridge;
+use super::closed_form::{Bridge, assess_bridge};
 use super::frame::LinkFrame;
 use super::loads::{BodyLoad, lump, own_loads};
 use super::part::Part;
@@ -87,9 +87,7 @@ fn assess_pieces(
     let (bridges, cyclic): (Vec<usize>, Vec<usize>) =
         (0..pieces.blocks.len()).partition(|&i| pieces.blocks[i].links.len() == 1);
     for index in bridges {
-        let part = assess_bridge(structure, &pieces.blocks[index], &loads);
-        answer.left_out_link(pieces.blocks[index].links[0]);
-        answer.add(index, part);
+        answer.add_bridge(index, &assess_bridge(structure, &pieces.blocks[index], &loads));
     }
     let mut open = Vec::new();
     for index in cyclic {
@@ -167,13 +165,6 @@ impl<'s> Answer<'s> {
         }
     }
 
-    fn left_out_link(&mut self, link: Link) {
-        match link {
-            Link::Connection(_) => self.left_out.closed_form_connections += 1,
-            Link::Contact(_) => self.left_out.closed_form_contacts += 1,
-        }
-    }
-
     fn count_solved(&mut self, block: &Block) {
         self.left_out.solved_blocks += 1;
         self.left_out.largest_block_bodies = self.left_out.largest_block_bodies.max(block.bodies.len());
@@ -201,6 +192,35 @@ impl<'s> Answer<'s> {
         self.spread();
     }
 
+    fn add_bridge(&mut self, index: usize, bridge: &Bridge) {
+        let block = &self.blocks[index];
+        match block.links[0] {
+            Link::Connection(i) => {
+                self.left_out.closed_form_connections += 1;
+                self.record(i, &bridge.wrench, bridge.utilisation.upper);
+            }
+            Link::Contact(i) => {
+                self.left_out.closed_form_contacts += 1;
+                self.contacts[i] = bridge.force;
+            }
+        }
+        if self.collapsed {
+            return;
+        }
+        let lower = bridge.utilisation.lower;
+        if lower > self.utilisation.lower {
+            self.moving = Some((index, vec![bridge.mechanism(self.structure, block)]));
+        }
+        if lower.is_infinite() {
+            self.collapsed = true;
+            return;
+        }
+        if lower > 0.0 && lower >= self.utilisation.lower * (1.0 - TIE) {
+            self.candidates.push((lower, index, vec![1.0]));
+        }
+        self.utilisation = self.utilisation.max(bridge.utilisation);
+    }
+
     fn add(&mut self, index: usize, part: Part) {
         if self.collapsed {
             return;
@@ -211,10 +231,24 @@ impl<'s> Answer<'s> {
                 self.collapsed = true;
                 self.moving = Some((index, mechanism));
             }
-            Part::Stands { utilisation, wrenches, demands, mechanism, shares, undecided_because, decided_by } => {
+            Part::Stands {
+                utilisation,
+                wrenches,
+                demands,
+                mechanism,
+                shares,
+                undecided_because,
+                decided_by,
+                unproved: _,
+            } => {
                 self.decided_by = self.decided_by.max(decided_by);
                 for ((&link, wrench), demand) in self.blocks[index].links.iter().zip(&wrenches).zip(demands) {
-                    self.record(link, wrench, demand);
+                    match link {
+                        Link::Connection(i) => self.record(i, wrench, demand),
+                        Link::Contact(i) => {
+                            self.contacts[i] = LinkFrame::new(self.structure, link).axes * wrench.force;
+                        }
+                    }
                 }
                 if utilisation.lower > self.utilisation.lower {
                     self.moving = Some((index, mechanism));
@@ -226,15 +260,10 @@ impl<'s> Answer<'s> {
         }
     }
 
-    fn record(&mut self, link: Link, wrench: &Wrench, utilisation: f64) {
-        match link {
-            Link::Connection(i) => {
-                let rated = self.structure.connectors[self.structure.connections[i].connector].strength;
-                self.connections[i] =
-                    ConnectionState { wrench: *wrench, strength: utilisation * rated, utilisation, critical: false };
-            }
-            Link::Contact(i) => self.contacts[i] = LinkFrame::new(self.structure, link).axes * wrench.force,
-        }
+    fn record(&mut self, connection: usize, wrench: &Wrench, utilisation: f64) {
+        let rated = self.structure.connectors[self.structure.connections[connection].connector].strength;
+        self.connections[connection] =
+            ConnectionState { wrench: *wrench, strength: utilisation * rated, utilisation, critical: false };
     }
 
     /// Carries the moving block's motion on to what hangs from it: every block

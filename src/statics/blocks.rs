@@ -13,6 +13,8 @@
 //! components after Hopcroft and Tarjan (1973), here without recursion so that
 //! chains of 100 000 bodies do not exhaust the stack.
 
+use smallvec::SmallVec;
+
 use super::structure::{Anchor, Structure};
 
 /// A vertex of the graph: the ground (the world and every fixed body), or a body.
@@ -35,9 +37,9 @@ pub(super) struct Block {
     /// Where it hangs from: held while the block is solved.
     pub root: Vertex,
     /// The bodies that need balance, the root not among them.
-    pub bodies: Vec<usize>,
+    pub bodies: SmallVec<[usize; 1]>,
     /// Its connections and contacts, in the structure's order.
-    pub links: Vec<Link>,
+    pub links: SmallVec<[Link; 1]>,
 }
 
 /// The pieces of a structure.
@@ -210,11 +212,14 @@ impl<'g> Search<'g> {
     }
 
     fn close(&mut self, root: usize, links_before: usize, bodies_before: usize) {
-        let mut numbers = self.open_links.split_off(links_before);
+        let numbers = &mut self.open_links[links_before..];
         numbers.sort_unstable();
-        let mut bodies = self.open_bodies.split_off(bodies_before);
+        let links = numbers.iter().map(|&link| self.graph.links[link].0).collect();
+        self.open_links.truncate(links_before);
+        let bodies = &mut self.open_bodies[bodies_before..];
         bodies.sort_unstable();
-        let links = numbers.into_iter().map(|link| self.graph.links[link].0).collect();
+        let bodies = SmallVec::from_slice(bodies);
+        self.open_bodies.truncate(bodies_before);
         self.found.blocks.push(Block { root: unnumber(root), bodies, links });
     }
 }
@@ -325,7 +330,7 @@ mod tests {
         structure.bodies[0].fixed = true;
         let found = cut(&structure);
         assert_eq!(found.blocks.len(), 1);
-        assert_eq!((found.blocks[0].root, &found.blocks[0].bodies), (Vertex::Ground, &vec![1, 2]));
+        assert_eq!((found.blocks[0].root, &found.blocks[0].bodies[..]), (Vertex::Ground, &[1, 2][..]));
         assert_eq!(found.blocks[0].links.len(), 3);
     }
 }

@@ -7,26 +7,47 @@ use super::blocks::{Block, Link, Vertex};
 use super::demand::{WrenchError, demand};
 use super::frame::LinkFrame;
 use super::loads::BodyLoad;
-use super::part::Part;
-use super::rung::Rung;
 use super::structure::Structure;
 use super::tolerances::DATA;
 
+/// What was found out about a bridge.
+pub(super) struct Bridge {
+    /// Utilisation of its link, infinite when no strength suffices.
+    pub utilisation: Bracket,
+    /// Wrench of its link, in the link's frame.
+    pub wrench: Wrench,
+    /// Force of a contact on its body, in W.
+    pub force: Vec3,
+    failing: Twist,
+    frame: LinkFrame,
+}
+
+impl Bridge {
+    /// The motion of the body that hangs there in which the link gives way, that
+    /// proves the lower bound.
+    pub(super) fn mechanism(&self, structure: &Structure, block: &Block) -> Twist {
+        let frame = &self.frame;
+        let com = structure.bodies[block.bodies[0]].com;
+        let at_origin = Twist::new(frame.axes * self.failing.linear, frame.axes * self.failing.angular);
+        let here = at_origin.moved(&(com - frame.origin));
+        let sign = sign(frame, block);
+        Twist::new(here.linear * sign, here.angular * sign)
+    }
+}
+
+/// Sign of the link's wrench on the block's body.
+fn sign(frame: &LinkFrame, block: &Block) -> f64 {
+    if frame.plus == Vertex::Body(block.bodies[0]) { 1.0 } else { -1.0 }
+}
+
 /// Assesses a block that consists of one link and one body that needs balance.
-pub(super) fn assess_bridge(structure: &Structure, block: &Block, loads: &[BodyLoad]) -> Part {
+pub(super) fn assess_bridge(structure: &Structure, block: &Block, loads: &[BodyLoad]) -> Bridge {
     let (body, link) = (block.bodies[0], block.links[0]);
     let frame = LinkFrame::new(structure, link);
-    let com = structure.bodies[body].com;
-    let sign = if frame.plus == Vertex::Body(body) { 1.0 } else { -1.0 };
-    let load = loads[body].moved(&(com - frame.origin));
+    let load = loads[body].moved(&(structure.bodies[body].com - frame.origin));
     let turned = |v: &Vec3| frame.axes.tr_mul(v);
     // The link holds what the body carries: the wrench on the plus side.
-    let wrench = Wrench::new(turned(&load.wrench.force), turned(&load.wrench.torque)) * -sign;
-    let to_twist = |relative: &Twist| {
-        let at_origin = Twist::new(frame.axes * relative.linear, frame.axes * relative.angular);
-        let here = at_origin.moved(&(com - frame.origin));
-        Twist::new(here.linear * sign, here.angular * sign)
-    };
+    let wrench = Wrench::new(turned(&load.wrench.force), turned(&load.wrench.torque)) * -sign(&frame, block);
     match link {
         Link::Connection(i) => {
             let connector = &structure.connectors[structure.connections[i].connector];
@@ -34,36 +55,17 @@ pub(super) fn assess_bridge(structure: &Structure, block: &Block, loads: &[BodyL
             let turned_size = |v: &Vec3| frame.axes.abs().tr_mul(v);
             let error = WrenchError { force: turned_size(&error.force), torque: turned_size(&error.torque) };
             let demanded = demand(connector, &wrench, &error);
-            let mechanism = vec![to_twist(&demanded.failing)];
-            if demanded.utilisation.lower.is_infinite() {
-                return Part::Collapses { mechanism, decided_by: Rung::ClosedForm };
-            }
-            let critical = demanded.utilisation.lower > 0.0;
-            Part::Stands {
-                utilisation: demanded.utilisation,
-                wrenches: vec![wrench],
-                demands: vec![demanded.utilisation.upper],
-                mechanism,
-                shares: vec![if critical { 1.0 } else { 0.0 }],
-                undecided_because: None,
-                decided_by: Rung::ClosedForm,
-            }
+            let utilisation = demanded.utilisation;
+            Bridge { utilisation, wrench, force: Vec3::zeros(), failing: demanded.failing, frame }
         }
         Link::Contact(i) => {
             let friction = structure.contacts[i].friction;
             let (force_slip, torque_slip) = (DATA * load.force_size.norm(), DATA * load.torque_size.norm());
-            if let Some(escape) = escape(&wrench, friction, force_slip, torque_slip) {
-                return Part::Collapses { mechanism: vec![to_twist(&escape)], decided_by: Rung::ClosedForm };
-            }
-            Part::Stands {
-                utilisation: Bracket::exact(0.0),
-                wrenches: vec![Wrench::new(wrench.force, Vec3::zeros())],
-                demands: vec![0.0],
-                mechanism: vec![Twist::ZERO],
-                shares: vec![0.0],
-                undecided_because: None,
-                decided_by: Rung::ClosedForm,
-            }
+            let escape = escape(&wrench, friction, force_slip, torque_slip);
+            let utilisation = Bracket::exact(if escape.is_some() { f64::INFINITY } else { 0.0 });
+            let held = Wrench::new(wrench.force, Vec3::zeros());
+            let force = frame.axes * held.force;
+            Bridge { utilisation, wrench: held, force, failing: escape.unwrap_or(Twist::ZERO), frame }
         }
     }
 }

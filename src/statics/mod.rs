@@ -53,6 +53,7 @@ pub use assess::assess;
 pub use assessment::{Assessment, Bracket, ConnectionState, LeftOut, Question, Verdict};
 pub use connector::{Connector, Model};
 pub use near::{Memory, NotNear, assess_keeping, assess_near};
+pub use patch::face_forces;
 pub use rung::{Rung, Tally};
 pub use structure::{Anchor, Body, Connection, Contact, Load, Structure};
 pub use validate::{InvalidStructure, validate};

@@ -22,6 +22,9 @@ pub(super) enum Part {
         undecided_because: Option<String>,
         /// What the answer took.
         decided_by: Rung,
+        /// Where the solver was stopped early: its fields, which prove only what
+        /// was asked for but may be near what would prove the rest.
+        unproved: Option<(Vec<Wrench>, Vec<Twist>)>,
     },
     /// No strength helps: the motion per body of the block that proves it.
     Collapses {

@@ -33,6 +33,9 @@ const GAP: f64 = 1e-14;
 /// degenerate patch do not have, and a wrench as having a part in it.
 const UNHELD: f64 = 1e-11;
 
+/// Rounds in which forces at a face's points are made to add up to what they carry.
+const REPAIRS: usize = 3;
+
 type Rows = SVector<f64, 5>;
 
 /// The least total normal force and the twist that proves it.
@@ -97,6 +100,49 @@ pub(super) fn least_normal_force(wrench: &Wrench, friction: f64, points: &[[f64;
     NormalForce { total, twist: Twist::new(linear, angular) }
 }
 
+/// Forces in N at the points of a face, on the child, in the connection frame, that
+/// carry `wrench` with the least preload: up to rounding they add up to its shear,
+/// bending and torsion, and press with `f_z` or more, so that the preload is their total
+/// normal force less `f_z`. `spare` is an extra pressure in N, spread over all
+/// points, that keeps them inside their friction cones in spite of rounding.
+///
+/// Directions that the face cannot hold at all are left out. `None` for a face without
+/// points or beyond the reach of numbers.
+pub fn face_forces(wrench: &Wrench, friction: f64, points: &[[f64; 2]], spare: f64) -> Option<Vec<Vec3>> {
+    let radius = size(points);
+    let lever = if radius > 0.0 { radius } else { 1.0 };
+    let (f, m) = (&wrench.force, &wrench.torque);
+    let grip = if friction > 0.0 { friction } else { f64::INFINITY };
+    let wanted = Rows::new(f.x / grip, f.y / grip, m.x / lever, m.y / lever, m.z / (lever * grip));
+    let scale = wanted.amax().max(f.z.abs());
+    if points.is_empty() || !(scale < f64::INFINITY) {
+        return None;
+    }
+    if scale == 0.0 {
+        return Some(vec![Vec3::zeros(); points.len()]);
+    }
+    let unit: Vec<[f64; 2]> = points.iter().map(|p| [p[0] / lever, p[1] / lever]).collect();
+    let program = Program::new(&unit, wanted / scale);
+    let mut x = if wanted == Rows::zeros() { vec![[0.0; 3]; points.len()] } else { program.solve().x };
+    for _ in 0..REPAIRS {
+        let multipliers = program.gram.as_ref()?.solve(&program.missing(&x));
+        for (j, z) in x.iter_mut().enumerate() {
+            let change = program.columns(j, &multipliers);
+            *z = std::array::from_fn(|k| z[k] + change[k]);
+        }
+    }
+    let pressing = x.iter().zip(&program.pressure).map(|(z, b)| -slack(z) / b).fold(0.0, f64::max);
+    let pressure: f64 = program.pressure.iter().sum();
+    let total = x.iter().map(|z| z[0]).sum::<f64>() + pressing * pressure;
+    let lacking = (f.z / scale - total).max(0.0);
+    let more = pressing + (lacking + spare / scale) / pressure;
+    let force = |(z, b): (&[f64; 3], &f64)| {
+        let grip = if friction > 0.0 { friction } else { 0.0 };
+        Vec3::new(grip * z[1], grip * z[2], z[0] + more * b) * scale
+    };
+    Some(x.iter().zip(&program.pressure).map(force).collect())
+}
+
 fn opening(angular: Vec3) -> Twist {
     Twist::new(Vec3::z(), angular)
 }
@@ -140,6 +186,8 @@ struct Program<'p> {
 struct Solved {
     y: Rows,
     total: Bracket,
+    /// The points' forces that the upper bound came from, before they were repaired.
+    x: Vec<[f64; 3]>,
 }
 
 impl<'p> Program<'p> {
@@ -180,7 +228,7 @@ impl<'p> Program<'p> {
         let mut x = vec![head; count];
         let mut s = vec![head; count];
         let mut y = Rows::zeros();
-        let mut best = Solved { y, total: Bracket::new(0.0, f64::INFINITY) };
+        let mut best = Solved { y, total: Bracket::new(0.0, f64::INFINITY), x: x.clone() };
         for _ in 0..ITERATIONS {
             let missing = self.missing(&x);
             let dual_missing: Vec<[f64; 3]> = (0..count)
@@ -280,6 +328,7 @@ impl<'p> Program<'p> {
         let upper = self.repaired(x, missing);
         if upper < best.total.upper {
             best.total.upper = upper.max(best.total.lower);
+            best.x.copy_from_slice(x);
         }
     }
 

@@ -147,6 +147,7 @@ pub(super) fn assess_block(structure: &Structure, block: &Block, loads: &[BodyLo
             )
         }),
         decided_by: rung,
+        unproved: best.unproved,
     }
 }
 
@@ -173,6 +174,7 @@ fn unloaded(block: &Block) -> Part {
         shares: vec![0.0; block.links.len()],
         undecided_because: None,
         decided_by: Rung::ClosedForm,
+        unproved: None,
     }
 }
 
@@ -184,6 +186,8 @@ struct Best {
     demands: Vec<f64>,
     mechanism: Vec<Twist>,
     shares: Vec<f64>,
+    /// Both fields of the iterate that was enough, as they are.
+    unproved: Option<(Vec<Wrench>, Vec<Twist>)>,
 }
 
 impl Best {
@@ -195,6 +199,7 @@ impl Best {
             demands: vec![0.0; block.links.len()],
             mechanism: vec![Twist::ZERO; block.bodies.len()],
             shares: vec![0.0; block.links.len()],
+            unproved: None,
         }
     }
 
@@ -228,6 +233,8 @@ impl Best {
                 }
             }
             if self.answers(question) {
+                let iterate = method.iterate();
+                self.unproved = Some((wrenches(problem.program, &iterate), problem.program.twists(&iterate.v)));
                 return Rung::StoppedEarly;
             }
             // What the last digits of the factorisation spoil is given back as it was.

@@ -19,8 +19,8 @@ pub enum Answer {
     Utilisation(f64),
     /// No strength suffices.
     Infeasible,
-    /// Anything else.
-    GaveUp,
+    /// Anything else, with the utilisation that it had then; NaN when it had none.
+    GaveUp(f64),
 }
 
 /// Asks the solver at `tolerance`.
@@ -49,12 +49,12 @@ pub fn solve(structure: &Structure, tolerance: f64) -> Answer {
     let nothing = CscMatrix::zeros((width, width));
     let solver =
         settings.and_then(|s| DefaultSolver::new(&nothing, &objective, &matrix, &program.rhs, &program.cones, s).ok());
-    let Some(mut solver) = solver else { return Answer::GaveUp };
+    let Some(mut solver) = solver else { return Answer::GaveUp(f64::NAN) };
     solver.solve();
     match solver.solution.status {
         SolverStatus::Solved => Answer::Utilisation(solver.solution.obj_val),
         SolverStatus::PrimalInfeasible => Answer::Infeasible,
-        _ => Answer::GaveUp,
+        _ => Answer::GaveUp(solver.solution.obj_val),
     }
 }
 
@@ -277,14 +277,16 @@ impl Program {
     }
 }
 
-fn typical_force(structure: &Structure) -> f64 {
+/// The mean weight and load of a body, in N.
+pub fn typical_force(structure: &Structure) -> f64 {
     let weight = structure.bodies.iter().map(|body| body.mass).sum::<f64>() * structure.gravity.norm();
     let loads = structure.loads.iter().map(|load| load.force.norm()).sum::<f64>();
     let mean = (weight + loads) / structure.bodies.len().max(1) as f64;
     if mean > 0.0 { mean } else { 1.0 }
 }
 
-fn typical_length(structure: &Structure) -> f64 {
+/// The mean distance of connections and contacts from centres of mass, in m.
+pub fn typical_length(structure: &Structure) -> f64 {
     let mut levers = Vec::new();
     for connection in &structure.connections {
         for anchor in [connection.parent, connection.child] {

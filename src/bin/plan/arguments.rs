@@ -89,7 +89,7 @@ fn seconds(text: &str) -> Result<Duration, String> {
 
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Replay a plan from its start and check everything that it claims
+    /// Check everything that a plan or a certificate claims: replay the one, recompute the other's proof
     Verify(VerifyArguments),
     /// Say whether a structure or a configuration is stable, and by what margin
     Check(CheckArguments),
@@ -104,6 +104,9 @@ pub struct CheckArguments {
     /// Print a check/1 document (and errors as an errors/1 document)
     #[arg(long)]
     pub json: bool,
+    /// Write a certificate/1 document that proves the verdict to anyone: see `plan verify`
+    #[arg(long, value_name = "FILE")]
+    pub certificate: Option<PathBuf>,
     /// How many of the most loaded connections to show
     #[arg(long, value_name = "N", default_value_t = 10)]
     pub top: usize,
@@ -111,8 +114,8 @@ pub struct CheckArguments {
 
 #[derive(Debug, Args)]
 pub struct VerifyArguments {
-    /// A plan/1 file; `-` reads standard input
-    pub plan: PathBuf,
+    /// A plan/1 or certificate/1 file; `-` reads standard input
+    pub file: PathBuf,
 }
 
 #[derive(Debug, Args)]

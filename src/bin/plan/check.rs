@@ -1,10 +1,13 @@
 //! `plan check FILE`
 
+use std::error::Error;
 use std::fmt::Write;
-use std::io;
+use std::path::Path;
 use std::time::Instant;
+use std::{fs, io};
 
-use steadfast::io::{Checkable, NamedStructure, read_checkable, write_check};
+use steadfast::certificate::issue;
+use steadfast::io::{CertificateDocument, Checkable, NamedStructure, read_checkable, write_certificate, write_check};
 use steadfast::statics::{Assessment, Bracket, Question, Verdict, assess};
 
 use crate::arguments::CheckArguments;
@@ -40,11 +43,24 @@ pub fn run(arguments: &CheckArguments) -> io::Result<Exit> {
     } else {
         output::result(&report(&named, &answer, arguments.top, seconds))?;
     }
+    if let Some(out) = &arguments.certificate
+        && let Err(trouble) = certify(&named, &answer, out)
+    {
+        output::message(&format!("error: {}: {trouble}", out.display()))?;
+        return Ok(Exit::BadInput);
+    }
     Ok(match answer.verdict {
         Verdict::Stable => Exit::Yes,
         Verdict::InternallyUnstable | Verdict::WholeBodyUnstable => Exit::No,
         Verdict::Undecided => Exit::Undecided,
     })
+}
+
+/// Writes a certificate of the answer; it is verified before it is written.
+fn certify(named: &NamedStructure, answer: &Assessment, out: &Path) -> Result<(), Box<dyn Error>> {
+    let document = CertificateDocument::new(named, issue(&named.structure, answer)?);
+    fs::write(out, write_certificate(&document)?)?;
+    Ok(())
 }
 
 fn report(named: &NamedStructure, answer: &Assessment, top: usize, seconds: f64) -> String {

@@ -1,26 +1,72 @@
-//! `plan verify PLAN`
+//! `plan verify FILE`
 
 use std::io;
 
-use steadfast::io::{PlanDocument, read_plan};
+use steadfast::certificate::check;
+use steadfast::io::{CertificateDocument, PlanDocument, Verifiable, read_verifiable};
 use steadfast::reconfigure::Plan;
 use steadfast::reconfigure::replay::{Failure, Fault, replay};
 use steadfast::robot::Configuration;
+use steadfast::statics::Verdict;
 
 use crate::arguments::VerifyArguments;
 use crate::exit::Exit;
 use crate::{files, naming, output};
 
-/// Replays every plan of a file and reports the first thing wrong with each, and all of it.
+/// How many of a certificate's faults are shown.
+const SHOWN: usize = 5;
+
+/// Verifies a plan or a certificate, by what the file says that it is.
 ///
 /// # Errors
 /// The output cannot be written.
 pub fn run(arguments: &VerifyArguments) -> io::Result<Exit> {
-    let file = files::read(&arguments.plan);
-    let document = match read_plan(&file) {
-        Ok(document) => document,
-        Err(diagnostics) => return output::bad_input(&diagnostics, false),
-    };
+    let file = files::read(&arguments.file);
+    match read_verifiable(&file) {
+        Ok(Verifiable::Plan(document)) => plans(&file.name, &document),
+        Ok(Verifiable::Certificate(document)) => certificate(&document),
+        Err(diagnostics) => output::bad_input(&diagnostics, false),
+    }
+}
+
+/// Checks a certificate and reports what it proves, or what is wrong with it.
+fn certificate(document: &CertificateDocument) -> io::Result<Exit> {
+    match check(&document.certificate) {
+        Ok(proof) => {
+            let claimed = document.certificate.utilisation;
+            let verdict = match document.certificate.verdict {
+                Verdict::Stable => "stable",
+                Verdict::InternallyUnstable => "internally unstable",
+                Verdict::WholeBodyUnstable => "whole-body unstable",
+                Verdict::Undecided => "undecided",
+            };
+            let between = match claimed.lower == f64::INFINITY {
+                true => "no strength of the connections helps".to_string(),
+                false => format!("utilisation between {} and {}", claimed.lower, claimed.upper),
+            };
+            let data = match proof.forgiven == 0.0 {
+                true => "for the data to the last bit".to_string(),
+                false => format!("for data meant up to a relative {:.0e}", proof.forgiven),
+            };
+            output::result(&format!("VERIFIED: {verdict}, {between}\nproved {data}\n"))?;
+            Ok(Exit::Yes)
+        }
+        Err(faults) => {
+            let mut text = "NOT VERIFIED\n".to_string();
+            for fault in faults.iter().take(SHOWN) {
+                text.push_str(&format!("  {}\n", document.sentence(fault)));
+            }
+            if faults.len() > SHOWN {
+                text.push_str(&format!("  and {} more\n", faults.len() - SHOWN));
+            }
+            output::result(&text)?;
+            Ok(Exit::No)
+        }
+    }
+}
+
+/// Replays every plan of a file and reports the first thing wrong with each, and all of it.
+fn plans(name: &str, document: &PlanDocument) -> io::Result<Exit> {
     if document.plans().next().is_none() {
         output::result("NOTHING TO VERIFY: the file holds no plan\n")?;
         return Ok(Exit::Undecided);
@@ -31,7 +77,7 @@ pub fn run(arguments: &VerifyArguments) -> io::Result<Exit> {
         if index > 0 {
             text.push_str(&format!("\nalternative {index}: "));
         }
-        match verify(&document, index, plan) {
+        match verify(document, index, plan) {
             Ok((verdict, verified)) => {
                 text.push_str(&verdict);
                 if !verified {
@@ -39,7 +85,7 @@ pub fn run(arguments: &VerifyArguments) -> io::Result<Exit> {
                 }
             }
             Err(problem) => {
-                return output::refused(&file.name, [problem], false);
+                return output::refused(name, [problem], false);
             }
         }
     }

@@ -4,6 +4,7 @@
 //! a file means is decided here; how it is written, in [`super::wire`].
 
 mod catalogue;
+mod certificate;
 mod configuration;
 mod connections;
 mod connector;
@@ -19,8 +20,9 @@ mod rotation;
 mod sequence;
 mod structure;
 
+use super::certificate_document::CertificateDocument;
 use super::diagnostics::Diagnostics;
-use super::document::{Checkable, NamedStructure, Problem, Resolve, SourceFile};
+use super::document::{Checkable, NamedStructure, Problem, Resolve, SourceFile, Verifiable};
 use super::findings::Findings;
 use super::plan_document::PlanDocument;
 use crate::robot::{Catalogue, Configuration};
@@ -97,5 +99,34 @@ pub fn read_plan(file: &SourceFile) -> Result<PlanDocument, Diagnostics> {
     let mut findings = Findings::default();
     let document = findings.open(file);
     let value = document.as_ref().and_then(|document| plan::read(&document.root(), &mut findings));
+    findings.finish(value)
+}
+
+/// Reads a `certificate/1` file, whose checksum must be right. Whether the certificate
+/// holds is for its checker to say.
+///
+/// # Errors
+/// All problems of the file at once.
+pub fn read_certificate(file: &SourceFile) -> Result<CertificateDocument, Diagnostics> {
+    let mut findings = Findings::default();
+    let document = findings.open(file);
+    let value = document.as_ref().and_then(|document| certificate::read(&document.root(), &mut findings));
+    findings.finish(value)
+}
+
+/// Reads a plan or a certificate, by what its `format` says.
+///
+/// # Errors
+/// All problems of the file at once.
+pub fn read_verifiable(file: &SourceFile) -> Result<Verifiable, Diagnostics> {
+    let mut findings = Findings::default();
+    let document = findings.open(file);
+    let value = document.as_ref().and_then(|document| {
+        let root = document.root();
+        match decode::format_of(&root, &["plan", "certificate"], &mut findings)? {
+            "plan" => plan::read(&root, &mut findings).map(|plan| Verifiable::Plan(Box::new(plan))),
+            _ => certificate::read(&root, &mut findings).map(|found| Verifiable::Certificate(Box::new(found))),
+        }
+    });
     findings.finish(value)
 }

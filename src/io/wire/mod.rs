@@ -5,6 +5,7 @@
 
 mod action;
 mod catalogue;
+mod certificate;
 mod check;
 mod configuration;
 mod connector;
@@ -16,6 +17,9 @@ mod structure;
 
 pub(super) use action::{Action, Axis, CellTarget};
 pub(super) use catalogue::{BodyType, Catalogue, CatalogueFormat, Faces, ModuleType, Motion, Ports, Shape};
+pub(super) use certificate::{
+    Carried, CarriedPoints, CarriedWrench, Certificate, CertificateFormat, Mechanism, Stress, Twist,
+};
 pub(super) use check::{Check, CheckFormat, CheckedConnection, CheckedContact, LeftOut, Verdict, Wrench};
 pub(super) use configuration::{
     CatalogueRef, Configuration, ConfigurationFormat, Connections, Environment, FrameMatch, Ground, Match, Module,

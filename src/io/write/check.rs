@@ -16,12 +16,7 @@ pub(super) fn wire(named: &NamedStructure, assessment: &Assessment, seconds: f64
     let contacts = assessment.contacts.iter().zip(&named.contacts).filter(|_| held);
     wire::Check {
         format: wire::CheckFormat::V1,
-        verdict: match assessment.verdict {
-            Verdict::Stable => wire::Verdict::Stable,
-            Verdict::InternallyUnstable => wire::Verdict::InternallyUnstable,
-            Verdict::WholeBodyUnstable => wire::Verdict::WholeBodyUnstable,
-            Verdict::Undecided => wire::Verdict::Undecided,
-        },
+        verdict: verdict(assessment.verdict),
         undecided_because: assessment.undecided_because.clone(),
         utilisation: held.then(|| bracket(assessment.utilisation)),
         margin: held.then(|| bracket(assessment.margin())),
@@ -38,6 +33,15 @@ pub(super) fn wire(named: &NamedStructure, assessment: &Assessment, seconds: f64
             largest_block_bodies: left_out.largest_block_bodies as u64,
         },
         seconds: Real(seconds),
+    }
+}
+
+pub(super) fn verdict(verdict: Verdict) -> wire::Verdict {
+    match verdict {
+        Verdict::Stable => wire::Verdict::Stable,
+        Verdict::InternallyUnstable => wire::Verdict::InternallyUnstable,
+        Verdict::WholeBodyUnstable => wire::Verdict::WholeBodyUnstable,
+        Verdict::Undecided => wire::Verdict::Undecided,
     }
 }
 

@@ -1,5 +1,6 @@
 //! From core types to texts that read back equal.
 
+mod certificate;
 mod check;
 mod configuration;
 mod connector;
@@ -9,10 +10,13 @@ mod plan;
 mod sequence;
 mod structure;
 
+pub(super) use certificate::checksum as certificate_checksum;
+
 use std::fmt;
 
 use serde::Serialize;
 
+use super::certificate_document::CertificateDocument;
 use super::diagnostics::Diagnostics;
 use super::document::NamedStructure;
 use super::plan_document::PlanDocument;
@@ -77,6 +81,14 @@ pub fn write_plan(plan: &PlanDocument) -> Result<String, Unwritable> {
 /// A wrench or a force that is not finite.
 pub fn write_check(structure: &NamedStructure, assessment: &Assessment, seconds: f64) -> Result<String, Unwritable> {
     text(&check::wire(structure, assessment, seconds))
+}
+
+/// Writes a `certificate/1` file that reads back equal, bit for bit, with its checksum.
+///
+/// # Errors
+/// A number that is not finite.
+pub fn write_certificate(document: &CertificateDocument) -> Result<String, Unwritable> {
+    text(&certificate::wire(document)?)
 }
 
 impl Diagnostics {

@@ -159,8 +159,12 @@ impl Knowledge for Carried<'_> {
     fn note(&mut self, block: &Block, part: &Part) {
         let (mechanism, wrenches) = match part {
             Part::Collapses { mechanism, .. } => (Some(mechanism), None),
-            Part::Stands { utilisation, mechanism, wrenches, .. } => {
-                ((utilisation.lower > 0.0).then_some(mechanism), utilisation.upper.is_finite().then_some(wrenches))
+            Part::Stands { utilisation, mechanism, wrenches, unproved, .. } => {
+                let (proposed, moving) = unproved.as_ref().map_or((None, None), |(w, v)| (Some(w), Some(v)));
+                (
+                    if utilisation.lower > 0.0 { Some(mechanism) } else { moving },
+                    if utilisation.upper.is_finite() { Some(wrenches) } else { proposed },
+                )
             }
         };
         for (&body, twist) in block.bodies.iter().zip(mechanism.into_iter().flatten()) {

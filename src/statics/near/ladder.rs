@@ -79,6 +79,7 @@ impl<'p> Ladder<'p> {
             shares: self.shares,
             undecided_because: None,
             decided_by: Rung::CarriedOver,
+            unproved: None,
         }
     }
 
