@@ -430,11 +430,13 @@ impl Program {
     }
 }
 
-/// Strength that a unit of force demands in the direction in which that is most.
+/// By how much a force sideways demands more of a connector than one along it, where
+/// that is far more.
 fn leverage(model: &Model) -> f64 {
+    const ORDINARY: f64 = 0.1;
     match model {
-        Model::Cone { friction, .. } => friction.iter().map(|mu| 1.0 / mu).fold(1.0, f64::max),
-        Model::Patch { friction, .. } if *friction > 0.0 => (1.0 / friction).max(1.0),
+        Model::Cone { friction: [a, b], .. } => (ORDINARY / a.min(*b)).max(1.0),
+        Model::Patch { friction, .. } if *friction > 0.0 => (ORDINARY / friction).max(1.0),
         Model::Box { .. } | Model::Patch { .. } => 1.0,
     }
 }
