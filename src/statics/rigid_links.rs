@@ -53,6 +53,12 @@ impl Merged {
         Some(Self { structure: merge(structure, &of), of })
     }
 
+    /// Free bodies of `original` that another one, or the ground, stands for.
+    pub(super) fn bodies_saved(&self, original: &Structure) -> usize {
+        let bodies = self.of.iter().zip(&original.bodies).enumerate();
+        bodies.filter(|(i, (of, body))| **of != Some(*i) && !body.fixed).count()
+    }
+
     /// Carries the answer for the merged structure back to `original`.
     pub(super) fn undo(&self, original: &Structure, mut answer: Assessment) -> Assessment {
         let twist = |(i, of): (usize, &Option<usize>)| {
@@ -62,9 +68,7 @@ impl Merged {
         };
         answer.mechanism = self.of.iter().enumerate().map(twist).collect();
         answer.left_out.fixed_bodies = original.bodies.iter().filter(|body| body.fixed).count();
-        let alone = |(i, of): (usize, &Option<usize>)| *of == Some(i) || original.bodies[i].fixed;
-        answer.left_out.merged_bodies =
-            self.of.len() - self.of.iter().enumerate().filter(|found| alone(*found)).count();
+        answer.left_out.merged_bodies = self.bodies_saved(original);
         if answer.utilisation.upper.is_finite() {
             balance_groups(original, &mut answer);
         }
