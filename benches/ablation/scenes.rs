@@ -36,7 +36,8 @@ pub fn all() -> Vec<Scene> {
 
 fn suspension() -> Structure {
     let path = problems::root().join("structures/suspension_76.json");
-    let file = SourceFile { name: path.display().to_string(), bytes: std::fs::read(&path) };
+    let bytes = std::fs::read(&path).map_err(|error| error.to_string());
+    let file = SourceFile { name: path.display().to_string(), bytes };
     read_structure(&file).expect("a file of the library is sound").structure
 }
 

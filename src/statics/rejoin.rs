@@ -51,8 +51,8 @@ mod tests {
     fn pieces(bodies: usize, pairs: &[[usize; 2]], bridges_apart: bool) -> Blocks {
         let anchor = |i: usize| if i == 0 { Anchor::World } else { Anchor::Body(i - 1) };
         let contacts = pairs.iter().map(|&[a, b]| Contact {
-            body: b - 1,
-            against: anchor(a),
+            body: a.max(b) - 1,
+            against: anchor(a.min(b)),
             position: Vec3::zeros(),
             normal: Vec3::z(),
             friction: 0.5,
