@@ -79,7 +79,7 @@ fn agree(share: f64, seeds: std::ops::Range<u64>) {
                 let (a, b) = (reduced.utilisation, full.utilisation);
                 assert!(may_be_equal(a, b), "{recipe:?} without {name}: {a:?} and {b:?}");
                 compared += 1;
-                let open = |bracket: Bracket| !(bracket.upper.is_infinite() == bracket.lower.is_infinite());
+                let open = |bracket: Bracket| bracket.upper.is_infinite() != bracket.lower.is_infinite();
                 if open(b) && !open(a) {
                     wide.push((recipe, name, b));
                 }

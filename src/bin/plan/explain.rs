@@ -1,7 +1,7 @@
 //! `plan check --explain`: what was left out of a scene and why, in words.
 
 use steadfast::io::NamedStructure;
-use steadfast::statics::{Explanation, Model, Remaining};
+use steadfast::statics::{Explanation, Remaining};
 
 use crate::table::table;
 
@@ -107,8 +107,8 @@ fn left_out(named: &NamedStructure, explanation: &Explanation) -> Vec<String> {
         }
         if explanation.is_linear() {
             items.push("second-order cones: only boxes and no friction are left, a linear program".to_owned());
-        } else if !structure.connectors.iter().any(|connector| matches!(connector.model, Model::Box { .. })) {
-            items.push("inequalities of boxes: there is no such connector".to_owned());
+        } else if sum(|block| block.inequalities) == 0 {
+            items.push("linear inequalities: no box and no frictionless point is left".to_owned());
         }
     }
     items.push("a secondary objective and the distribution of stress: only the margin was asked for".to_owned());
