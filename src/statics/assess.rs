@@ -19,6 +19,10 @@ use super::structure::Structure;
 use super::tolerances::{CRITICAL_SHARE, DATA, TIE};
 use super::validate::{InvalidStructure, validate};
 
+/// Bodies in several blocks from which on they are solved at the same time: fewer are
+/// solved before other threads have woken.
+const WORTH_THREADS: usize = 32;
+
 /// Finds the utilisation of `structure` as a bracket, and all that follows from it.
 ///
 /// The utilisation t is the smallest common factor on all rated strengths with
@@ -141,7 +145,8 @@ fn assess_pieces(
     let solve = |index: &usize| assess_block(structure, &pieces.blocks[*index], &loads, question, reductions);
     // Merged in the order of the blocks, whoever was first.
     let mut ahead = Vec::new();
-    if reductions.parallel && open.len() > 1 && !answer.settled(question) {
+    let bodies: usize = open.iter().map(|&index| pieces.blocks[index].bodies.len()).sum();
+    if reductions.parallel && open.len() > 1 && bodies >= WORTH_THREADS && !answer.settled(question) {
         ahead = side_by_side(&open, solve, |part| part.settles(question));
     }
     let mut ahead = ahead.into_iter();
