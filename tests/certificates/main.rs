@@ -2,7 +2,7 @@
 //! verifies.
 
 #[path = "../support/families/mod.rs"]
-#[expect(dead_code, unused_imports, reason = "other tests use the other families")]
+#[expect(unused_imports, reason = "other tests use the other families")]
 mod families;
 #[path = "../support/random.rs"]
 mod random;
