@@ -44,6 +44,32 @@ fn the_json_report_is_json_whatever_the_verdict() {
 }
 
 #[test]
+fn what_was_left_out_is_explained() {
+    let report = stdout(&plan(&["check", "--explain", "structures/suspension_76.json"]));
+    assert!(report.contains("4 fixed bodies"), "{report}");
+    assert!(report.contains("there is no contact"), "{report}");
+    assert!(report.lines().all(|line| line.chars().count() <= 80), "{report}");
+    // The table ends with the one block: its 72 bodies, and fewer unknowns than connections.
+    let remained: Vec<&str> = report.lines().last().unwrap().split_whitespace().collect();
+    assert_eq!(remained[0], "72", "{report}");
+    assert!(remained[1].parse::<usize>().unwrap() < 84, "{report}");
+
+    let report = stdout(&plan(&["check", "--explain", "structures/cantilever_box_10.json"]));
+    assert!(report.contains("10 connections and 0 contacts in closed form"), "{report}");
+    assert!(report.contains("nothing: no solver was asked"), "{report}");
+}
+
+#[test]
+fn the_json_report_explains_only_when_asked() {
+    let value = |arguments: &[&str]| -> serde_json::Value { serde_json::from_str(&stdout(&plan(arguments))).unwrap() };
+    assert!(value(&["check", "--json", "structures/suspension_76.json"])["explanation"].is_null());
+    let explanation = &value(&["check", "--json", "--explain", "structures/suspension_76.json"])["explanation"];
+    assert_eq!((&explanation["fixed_bodies"], &explanation["linear"]), (&4.into(), &false.into()));
+    assert_eq!(explanation["remaining"][0]["bodies"], 72);
+    assert_eq!(explanation["remaining"][0]["friction_cones"], 0);
+}
+
+#[test]
 fn bad_input_is_listed_on_stderr() {
     for kind in ["structure", "configuration"] {
         for path in problems::json_files(&format!("malformed/{kind}")).unwrap() {

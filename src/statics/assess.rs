@@ -9,11 +9,19 @@ use super::closed_form::{Bridge, assess_bridge};
 use super::frame::LinkFrame;
 use super::loads::{BodyLoad, lump, own_loads};
 use super::part::Part;
+use super::reductions::Reductions;
+use super::rejoin::rejoin;
+use super::rigid_links::Merged;
 use super::rung::Rung;
+use super::side_by_side::side_by_side;
 use super::solve_block::assess_block;
 use super::structure::Structure;
 use super::tolerances::{CRITICAL_SHARE, DATA, TIE};
 use super::validate::{InvalidStructure, validate};
+
+/// Bodies in several blocks from which on they are solved at the same time: fewer are
+/// solved before other threads have woken.
+const WORTH_THREADS: usize = 32;
 
 /// Finds the utilisation of `structure` as a bracket, and all that follows from it.
 ///
@@ -33,8 +41,26 @@ use super::validate::{InvalidStructure, validate};
 /// # Errors
 /// Non-finite or out-of-range data, or indices that point nowhere; all of them at once.
 pub fn assess(structure: &Structure, question: Question) -> Result<Assessment, Vec<InvalidStructure>> {
+    assess_reduced(structure, question, Reductions::ALL)
+}
+
+/// As [`assess`], with some of what a scene does not need left in.
+///
+/// # Errors
+/// As for [`assess`].
+pub fn assess_reduced(
+    structure: &Structure,
+    question: Question,
+    reductions: Reductions,
+) -> Result<Assessment, Vec<InvalidStructure>> {
     validate(structure)?;
-    Ok(assess_with(structure, question, &mut Unknown))
+    if reductions.rigid_links
+        && let Some(merged) = Merged::new(structure)
+    {
+        let answer = assess_with(&merged.structure, question, reductions, &mut Unknown);
+        return Ok(merged.undo(structure, answer));
+    }
+    Ok(assess_with(structure, question, reductions, &mut Unknown))
 }
 
 /// What is known about a structure's blocks before and after they are solved.
@@ -62,18 +88,31 @@ impl Knowledge for Unknown {
     fn close(&mut self, _: &[Block]) {}
 }
 
-/// Answers for a valid structure. What `knowledge` answers is not solved.
-pub(super) fn assess_with(structure: &Structure, question: Question, knowledge: &mut impl Knowledge) -> Assessment {
-    let pieces = cut(structure);
-    let answer = assess_pieces(structure, &pieces, question, knowledge);
+/// Answers for a valid structure. What `knowledge` answers is not solved. Rigid
+/// links are none of its business.
+pub(super) fn assess_with(
+    structure: &Structure,
+    question: Question,
+    reductions: Reductions,
+    knowledge: &mut impl Knowledge,
+) -> Assessment {
+    let pieces = pieces(structure, reductions);
+    let answer = assess_pieces(structure, &pieces, question, reductions, knowledge);
     knowledge.close(&pieces.blocks);
     answer
+}
+
+/// The pieces that `structure` is solved in.
+pub(super) fn pieces(structure: &Structure, reductions: Reductions) -> Blocks {
+    let pieces = cut(structure);
+    if reductions.blocks { pieces } else { rejoin(pieces, structure.bodies.len(), reductions.closed_form) }
 }
 
 fn assess_pieces(
     structure: &Structure,
     pieces: &Blocks,
     question: Question,
+    reductions: Reductions,
     knowledge: &mut impl Knowledge,
 ) -> Assessment {
     let loads = lump(structure, &pieces.blocks, own_loads(structure));
@@ -85,7 +124,7 @@ fn assess_pieces(
         }
     }
     let (bridges, cyclic): (Vec<usize>, Vec<usize>) =
-        (0..pieces.blocks.len()).partition(|&i| pieces.blocks[i].links.len() == 1);
+        (0..pieces.blocks.len()).partition(|&i| reductions.closed_form && pieces.blocks[i].links.len() == 1);
     for index in bridges {
         answer.add_bridge(index, &assess_bridge(structure, &pieces.blocks[index], &loads));
     }
@@ -103,13 +142,21 @@ fn assess_pieces(
             _ => open.push(index),
         }
     }
+    let solve = |index: &usize| assess_block(structure, &pieces.blocks[*index], &loads, question, reductions);
+    // Merged in the order of the blocks, whoever was first.
+    let mut ahead = Vec::new();
+    let bodies: usize = open.iter().map(|&index| pieces.blocks[index].bodies.len()).sum();
+    if reductions.parallel && open.len() > 1 && bodies >= WORTH_THREADS && !answer.settled(question) {
+        ahead = side_by_side(&open, solve, |part| part.settles(question));
+    }
+    let mut ahead = ahead.into_iter();
     for index in open {
         if answer.settled(question) {
             answer.stop();
             break;
         }
         let block = &pieces.blocks[index];
-        let part = assess_block(structure, block, &loads, question);
+        let part = ahead.next().flatten().unwrap_or_else(|| solve(&index));
         answer.count_solved(block);
         knowledge.note(block, &part);
         answer.add(index, part);

@@ -107,6 +107,9 @@ pub struct ConnectionState {
 pub struct LeftOut {
     /// Fixed bodies, which need no balance.
     pub fixed_bodies: usize,
+    /// Bodies that are held to another one, or to the ground, without limit, and
+    /// move with it.
+    pub merged_bodies: usize,
     /// Connections whose wrench follows from balance alone.
     pub closed_form_connections: usize,
     /// Contacts whose force follows from balance alone.

@@ -10,6 +10,7 @@ use nalgebra::{Matrix6, Vector6};
 use crate::spatial::{Vec3, Wrench};
 
 use super::blocks::{Block, Link};
+use super::bracket::Problem;
 use super::conic::Iterate;
 use super::loads::BodyLoad;
 use super::maps::relative;
@@ -73,15 +74,9 @@ pub(super) fn idle_contacts(block: &Block, field: &[Wrench], share: f64) -> Vec<
 }
 
 /// Corrects `field` in place towards balance. What is `idle` carries nothing.
-pub(super) fn restore(
-    structure: &Structure,
-    block: &Block,
-    program: &Program,
-    loads: &[BodyLoad],
-    iterate: &Iterate,
-    field: &mut [Wrench],
-    idle: &[bool],
-) {
+/// With `in_series`, chains are condensed.
+pub(super) fn restore(problem: &Problem<'_>, iterate: &Iterate, field: &mut [Wrench], idle: &[bool], in_series: bool) {
+    let Problem { structure, block, loads, program } = *problem;
     for (wrench, _) in field.iter_mut().zip(idle).filter(|(_, idle)| **idle) {
         *wrench = Wrench::ZERO;
     }
@@ -101,7 +96,7 @@ pub(super) fn restore(
             for (metric, _) in metric.iter_mut().zip(idle).filter(|(_, idle)| **idle) {
                 *metric = Matrix6::zeros();
             }
-            let mut network = Network::new(program, true);
+            let mut network = Network::new(program, in_series);
             network.factorise(&metric, |link| flexibility_root(&metric[link]));
             (network, metric)
         });

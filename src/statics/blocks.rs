@@ -25,7 +25,7 @@ pub(super) enum Vertex {
 }
 
 /// A connection or contact, by its index in the structure.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Link {
     Connection(usize),
     Contact(usize),

@@ -56,6 +56,18 @@ pub enum Model {
 }
 
 impl Model {
+    /// Whether a connector of this kind holds whatever comes: it has no finite limit.
+    pub(super) fn is_unlimited(&self) -> bool {
+        match self {
+            Self::Cone { .. } | Self::Patch { .. } => false,
+            Self::Box { shear, tension, compression, bending, torsion } => {
+                [shear[0], shear[1], *tension, *compression, bending[0], bending[1], *torsion]
+                    .iter()
+                    .all(|limit| *limit == f64::INFINITY)
+            }
+        }
+    }
+
     /// Whether a connector of this kind with strength without bound joins its two bodies rigidly.
     pub(super) fn is_rigid(&self) -> bool {
         match self {

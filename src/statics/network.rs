@@ -123,6 +123,21 @@ impl Network {
         Self { junction, chains, matrix }
     }
 
+    /// Links that are no part of a chain, and chains.
+    pub(super) fn chains(&self) -> usize {
+        self.chains.len()
+    }
+
+    /// Chains of more than one link.
+    pub(super) fn chains_of_several(&self) -> usize {
+        self.chains.iter().filter(|chain| chain.links.len() > 1).count()
+    }
+
+    /// Bodies that are not within a chain.
+    pub(super) fn junctions(&self) -> usize {
+        self.matrix.bodies()
+    }
+
     /// Factorises for links of which `stiffness` is K, in their own frames, and
     /// `flexibility` the root G of its inverse, `K G G' = 1`.
     pub(super) fn factorise(&mut self, stiffness: &[Matrix6<f64>], flexibility: impl Fn(usize) -> Matrix6<f64>) {

@@ -42,4 +42,13 @@ impl Part {
             Self::Collapses { .. } => true,
         }
     }
+
+    /// Whether this answers `question` for the whole structure, whatever its other blocks do.
+    pub(super) fn settles(&self, question: Question) -> bool {
+        match (self, question) {
+            (Self::Collapses { .. }, _) => true,
+            (Self::Stands { utilisation, .. }, Question::Decide(threshold)) => utilisation.lower > threshold,
+            (Self::Stands { .. }, Question::ToGap(_)) => false,
+        }
+    }
 }

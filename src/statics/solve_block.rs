@@ -15,6 +15,7 @@ use super::loads::BodyLoad;
 use super::lowered::Lowered;
 use super::part::Part;
 use super::program::{Program, Purpose, local_body};
+use super::reductions::Reductions;
 use super::rung::Rung;
 use super::structure::Structure;
 
@@ -83,13 +84,19 @@ const IDLE: [f64; 4] = [0.0, 1e-6, 1e-4, 1e-2];
 const FUSED: [f64; 3] = [1e-7, 1e-5, 1e-3];
 
 /// Assesses a block with cycles.
-pub(super) fn assess_block(structure: &Structure, block: &Block, loads: &[BodyLoad], question: Question) -> Part {
+pub(super) fn assess_block(
+    structure: &Structure,
+    block: &Block,
+    loads: &[BodyLoad],
+    question: Question,
+    reductions: Reductions,
+) -> Part {
     if block.bodies.iter().all(|&body| loads[body].is_zero()) {
         return unloaded(block);
     }
     let program = Program::new(structure, block, loads, Purpose::Utilisation);
     let problem = Problem { structure, block, loads, program: &program };
-    let mut best = Best::new(block);
+    let mut best = Best::new(block, reductions.chains);
     // Where supports face each other, begin with the attempt that bounds forces.
     let first = usize::from(faces_itself(&problem));
     let inset = ATTEMPTS[first].inset;
@@ -188,10 +195,12 @@ struct Best {
     shares: Vec<f64>,
     /// Both fields of the iterate that was enough, as they are.
     unproved: Option<(Vec<Wrench>, Vec<Twist>)>,
+    /// Whether chains are condensed on the way.
+    in_series: bool,
 }
 
 impl Best {
-    fn new(block: &Block) -> Self {
+    fn new(block: &Block, in_series: bool) -> Self {
         Self {
             lower: 0.0,
             upper: f64::INFINITY,
@@ -200,6 +209,7 @@ impl Best {
             mechanism: vec![Twist::ZERO; block.bodies.len()],
             shares: vec![0.0; block.links.len()],
             unproved: None,
+            in_series,
         }
     }
 
@@ -210,7 +220,7 @@ impl Best {
     /// Runs the block's own method until what it proves answers the question, or
     /// it gets no further. Says which of the two it was.
     fn iterate(&mut self, problem: &Problem<'_>, inset: f64, question: Question) -> Rung {
-        let mut method = InteriorPoint::new(problem.program, inset, true);
+        let mut method = InteriorPoint::new(problem.program, inset, self.in_series);
         let mut finest: Option<(f64, Iterate)> = None;
         let mut tried = f64::INFINITY;
         for _ in 0..ITERATIONS {
@@ -287,13 +297,12 @@ impl Best {
     /// Keeps what the solver's wrenches prove once they balance, without the
     /// contacts that carry less than `share`; whether they balance.
     fn keep_upper(&mut self, problem: &Problem<'_>, iterate: &Iterate, share: f64) -> bool {
-        let Problem { structure, block, loads, program } = *problem;
-        let mut field = wrenches(program, iterate);
-        let idle = idle_contacts(block, &field, share);
+        let mut field = wrenches(problem.program, iterate);
+        let idle = idle_contacts(problem.block, &field, share);
         if share > 0.0 && !idle.contains(&true) {
             return false;
         }
-        restore(structure, block, program, loads, iterate, &mut field, &idle);
+        restore(problem, iterate, &mut field, &idle, self.in_series);
         let Some((upper, demands)) = problem.upper_bound(&field, self.unit_mechanism(), 0.0) else { return false };
         if upper < self.upper {
             self.upper = upper;

@@ -107,6 +107,9 @@ pub struct CheckArguments {
     /// Write a certificate/1 document that proves the verdict to anyone: see `plan verify`
     #[arg(long, value_name = "FILE")]
     pub certificate: Option<PathBuf>,
+    /// Say what was left out of the optimisation and why, and what remained
+    #[arg(long)]
+    pub explain: bool,
     /// How many of the most loaded connections to show
     #[arg(long, value_name = "N", default_value_t = 10)]
     pub top: usize,

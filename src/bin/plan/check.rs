@@ -8,10 +8,11 @@ use std::{fs, io};
 
 use steadfast::certificate::issue;
 use steadfast::io::{CertificateDocument, Checkable, NamedStructure, read_checkable, write_certificate, write_check};
-use steadfast::statics::{Assessment, Bracket, Question, Verdict, assess};
+use steadfast::statics::{Assessment, Bracket, Question, Reductions, Verdict, assess, explain};
 
 use crate::arguments::CheckArguments;
 use crate::exit::Exit;
+use crate::explain::explained;
 use crate::table::table;
 use crate::{files, output};
 
@@ -35,13 +36,19 @@ pub fn run(arguments: &CheckArguments) -> io::Result<Exit> {
         }
     };
     let seconds = clock.elapsed().as_secs_f64();
+    // A structure that was assessed is sound.
+    let explanation = arguments.explain.then(|| explain(&named.structure, Reductions::ALL).ok()).flatten();
     if arguments.json {
-        match write_check(&named, &answer, seconds) {
+        match write_check(&named, &answer, explanation.as_ref(), seconds) {
             Ok(text) => output::result(&text)?,
             Err(problem) => return output::refused(&file.name, [problem.to_string()], true),
         }
     } else {
-        output::result(&report(&named, &answer, arguments.top, seconds))?;
+        let mut text = report(&named, &answer, arguments.top, seconds);
+        if let Some(explanation) = &explanation {
+            text.push_str(&explained(&named, explanation));
+        }
+        output::result(&text)?;
     }
     if let Some(out) = &arguments.certificate
         && let Err(trouble) = certify(&named, &answer, out)

@@ -38,6 +38,9 @@ pub(crate) struct Check {
     pub(crate) contacts: Vec<CheckedContact>,
     /// What needed no optimisation.
     pub(crate) left_out: LeftOut,
+    /// The same in detail, and what remained; with `--explain`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) explanation: Option<Explanation>,
     /// Wall-clock time in s.
     pub(crate) seconds: Real,
 }
@@ -98,6 +101,8 @@ pub(crate) struct CheckedContact {
 pub(crate) struct LeftOut {
     /// Fixed bodies, which need no balance.
     pub(crate) fixed_bodies: u64,
+    /// Bodies that are held to another one, or to the ground, without limit.
+    pub(crate) merged_bodies: u64,
     /// Connections whose wrench follows from balance alone.
     pub(crate) closed_form_connections: u64,
     /// Contacts whose force follows from balance alone.
@@ -106,4 +111,58 @@ pub(crate) struct LeftOut {
     pub(crate) solved_blocks: u64,
     /// Free bodies in the largest such block.
     pub(crate) largest_block_bodies: u64,
+}
+
+/// What was left out of the optimisation and why, and what remained.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Explanation {
+    /// Fixed bodies, which need no balance.
+    pub(crate) fixed_bodies: u64,
+    /// Bodies that unlimited connections hold to another one or to the ground, and that move with it.
+    pub(crate) merged_bodies: u64,
+    /// Connections without any finite limit: what they carry follows from balance afterwards.
+    pub(crate) unlimited_connections: u64,
+    /// Other connections and contacts between what cannot move against each other.
+    pub(crate) idle_links: u64,
+    /// Groups of bodies that nothing leads to from the ground.
+    pub(crate) afloat: u64,
+    /// Connections whose wrench follows from balance alone.
+    pub(crate) closed_form_connections: u64,
+    /// Contacts whose force follows from balance alone.
+    pub(crate) closed_form_contacts: u64,
+    /// Blocks with cycles and nothing to hold.
+    pub(crate) unloaded_blocks: u64,
+    /// Whether no second-order cone remained: a linear program.
+    pub(crate) linear: bool,
+    /// What else could be found out, that this question does not ask for.
+    pub(crate) not_asked_for: Vec<String>,
+    /// The blocks that were optimised.
+    pub(crate) remaining: Vec<RemainingBlock>,
+}
+
+/// A block that was optimised, and the size of its program.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct RemainingBlock {
+    /// Free bodies.
+    pub(crate) bodies: u64,
+    /// Connections.
+    pub(crate) connections: u64,
+    /// Contacts.
+    pub(crate) contacts: u64,
+    /// Chains of more than one connection that one wrench runs through.
+    pub(crate) chains: u64,
+    /// Bodies within those chains.
+    pub(crate) bodies_in_chains: u64,
+    /// Unknown wrenches and contact forces once chains are condensed.
+    pub(crate) unknown_wrenches: u64,
+    /// Equations of balance that are factorised.
+    pub(crate) equations: u64,
+    /// Friction cones of contacts.
+    pub(crate) friction_cones: u64,
+    /// Second-order cones of connectors.
+    pub(crate) connector_cones: u64,
+    /// Linear inequalities.
+    pub(crate) inequalities: u64,
 }

@@ -3,9 +3,17 @@
 use super::super::document::NamedStructure;
 use super::super::wire::{self, Real};
 use super::{bracket, vector};
-use crate::statics::{Assessment, ConnectionState, Verdict};
+use crate::statics::{Assessment, ConnectionState, Explanation, Remaining, Verdict};
 
-pub(super) fn wire(named: &NamedStructure, assessment: &Assessment, seconds: f64) -> wire::Check {
+/// What a margin is found without.
+const NOT_ASKED_FOR: [&str; 2] = ["secondary objective", "distribution of stress"];
+
+pub(super) fn wire(
+    named: &NamedStructure,
+    assessment: &Assessment,
+    explanation: Option<&Explanation>,
+    seconds: f64,
+) -> wire::Check {
     let held = assessment.verdict != Verdict::WholeBodyUnstable;
     let (upper, left_out) = (assessment.utilisation.upper, &assessment.left_out);
     let strengths = || {
@@ -27,12 +35,45 @@ pub(super) fn wire(named: &NamedStructure, assessment: &Assessment, seconds: f64
             .collect(),
         left_out: wire::LeftOut {
             fixed_bodies: left_out.fixed_bodies as u64,
+            merged_bodies: left_out.merged_bodies as u64,
             closed_form_connections: left_out.closed_form_connections as u64,
             closed_form_contacts: left_out.closed_form_contacts as u64,
             solved_blocks: left_out.solved_blocks as u64,
             largest_block_bodies: left_out.largest_block_bodies as u64,
         },
+        explanation: explanation.map(explained),
         seconds: Real(seconds),
+    }
+}
+
+fn explained(explanation: &Explanation) -> wire::Explanation {
+    wire::Explanation {
+        fixed_bodies: explanation.fixed_bodies as u64,
+        merged_bodies: explanation.merged_bodies as u64,
+        unlimited_connections: explanation.unlimited_connections as u64,
+        idle_links: explanation.idle_links as u64,
+        afloat: explanation.afloat as u64,
+        closed_form_connections: explanation.closed_form_connections as u64,
+        closed_form_contacts: explanation.closed_form_contacts as u64,
+        unloaded_blocks: explanation.unloaded_blocks as u64,
+        linear: explanation.is_linear(),
+        not_asked_for: NOT_ASKED_FOR.map(str::to_owned).to_vec(),
+        remaining: explanation.remaining.iter().map(remaining).collect(),
+    }
+}
+
+fn remaining(block: &Remaining) -> wire::RemainingBlock {
+    wire::RemainingBlock {
+        bodies: block.bodies as u64,
+        connections: block.connections as u64,
+        contacts: block.contacts as u64,
+        chains: block.chains as u64,
+        bodies_in_chains: block.bodies_in_chains as u64,
+        unknown_wrenches: block.unknown_wrenches as u64,
+        equations: block.equations as u64,
+        friction_cones: block.friction_cones as u64,
+        connector_cones: block.connector_cones as u64,
+        inequalities: block.inequalities as u64,
     }
 }
 

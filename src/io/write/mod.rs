@@ -23,7 +23,7 @@ use super::plan_document::PlanDocument;
 use super::{layout, wire};
 use crate::robot::Configuration;
 use crate::spatial::{Rotation, Vec3};
-use crate::statics::{Assessment, Bracket};
+use crate::statics::{Assessment, Bracket, Explanation};
 
 /// A value that its format has no way to say: a NaN, an infinity, or a plan that is none.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -72,15 +72,21 @@ pub fn write_plan(plan: &PlanDocument) -> Result<String, Unwritable> {
     text(&plan::wire(plan)?)
 }
 
-/// Writes a `check/1` report on an assessed structure, which took `seconds`.
+/// Writes a `check/1` report on an assessed structure, which took `seconds`, with what was
+/// left out of it where that is explained.
 ///
 /// `utilisation`, `margin` and `required_strength_n` are `null` when the verdict is
 /// whole-body unstable; the lists are then empty. An end of a bracket where nothing was proved is `null`.
 ///
 /// # Errors
 /// A wrench or a force that is not finite.
-pub fn write_check(structure: &NamedStructure, assessment: &Assessment, seconds: f64) -> Result<String, Unwritable> {
-    text(&check::wire(structure, assessment, seconds))
+pub fn write_check(
+    structure: &NamedStructure,
+    assessment: &Assessment,
+    explanation: Option<&Explanation>,
+    seconds: f64,
+) -> Result<String, Unwritable> {
+    text(&check::wire(structure, assessment, explanation, seconds))
 }
 
 /// Writes a `certificate/1` file that reads back equal, bit for bit, with its checksum.

@@ -39,6 +39,7 @@ pub use memory::{Memory, NotNear};
 
 use super::assess::assess_with;
 use super::assessment::{Assessment, Question};
+use super::reductions::Reductions;
 use super::structure::Structure;
 use super::validate::{InvalidStructure, validate};
 use carry::Carried;
@@ -53,7 +54,7 @@ pub fn assess_keeping(
 ) -> Result<(Assessment, Memory), Vec<InvalidStructure>> {
     validate(structure)?;
     let mut carried = Carried::nothing(structure, question);
-    let answer = assess_with(structure, question, &mut carried);
+    let answer = assess_with(structure, question, Reductions::ALL, &mut carried);
     let memory = carried.into_memory(&answer);
     Ok((answer, memory))
 }
@@ -114,7 +115,7 @@ pub fn assess_near(
     validate(structure).map_err(NotNear::Structure)?;
     memory.check(structure, matching)?;
     let mut carried = Carried::new(structure, question, memory, matching);
-    let answer = assess_with(structure, question, &mut carried);
+    let answer = assess_with(structure, question, Reductions::ALL, &mut carried);
     let memory = carried.into_memory(&answer);
     Ok((answer, memory))
 }
