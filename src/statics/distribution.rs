@@ -22,7 +22,7 @@ use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSolver, IPSolver, SupportedConeT};
 use nalgebra::Vector6;
 
-use crate::spatial::Wrench;
+use crate::spatial::{Twist, Wrench};
 
 use super::assessment::{Bracket, Distribution, Question};
 use super::balance::restore;
@@ -36,13 +36,16 @@ use super::structure::Structure;
 
 /// Ways of asking the solver, tried in turn.
 const ATTEMPTS: [Attempt; 2] = [
+    Attempt { tolerance: 1e-12, inset: 0.0, regularization: 1e-9 },
     Attempt { tolerance: 1e-10, inset: 0.0, regularization: 1e-8 },
-    Attempt { tolerance: 1e-8, inset: 0.0, regularization: 1e-7 },
 ];
 
-/// By how much of the larger of it and 1 the upper bound may be exceeded where no
-/// field was proved within it: a tenth of what a value may be off.
-const ROOM: f64 = 1e-8;
+/// By how much of the larger of it and 1 the solver's residuals may take the shown
+/// field beyond the upper end that was proved before: half of what a value may be off.
+const ROOM: f64 = 5e-8;
+
+/// Share of that room which the solver is given where it does not do without any.
+const GIVEN: f64 = 0.25;
 
 /// Largest share of the field that proved the bracket in what is shown as the least.
 const MIXED: f64 = 1e-2;
@@ -67,10 +70,10 @@ pub(super) fn choose(
     if !whole.upper.is_finite() {
         return Distribution::Proof;
     }
-    let limits = [whole.upper, relaxed(whole)];
+    let limit = relaxed(whole);
     let mut kept = 0;
     for (index, part) in parts {
-        kept += usize::from(!improve(structure, &blocks[*index], loads, &limits, part));
+        kept += usize::from(!improve(structure, &blocks[*index], loads, (whole.upper, limit), part));
     }
     if kept == 0 { Distribution::Least } else { Distribution::LeastExcept { blocks: kept } }
 }
@@ -78,43 +81,39 @@ pub(super) fn choose(
 /// The largest upper bound that would still answer as well as `bracket` does.
 fn relaxed(bracket: Bracket) -> f64 {
     let Bracket { lower, upper } = bracket;
-    let wider = upper + ROOM * upper.max(1.0);
-    let wider = if upper <= 1.0 { wider.min(1.0) } else { wider };
-    if Question::VALUE.is_answered_by(&Bracket::new(lower, wider)) { wider } else { upper }
+    let mut limit = upper + ROOM * upper.max(1.0);
+    if Question::VALUE.is_answered_by(&bracket) {
+        limit = limit.min(lower + Question::VALUE.gap() * upper.max(1.0) * (1.0 - ROOM)).max(upper);
+    }
+    if upper <= 1.0 { limit.min(1.0) } else { limit }
 }
 
-/// Replaces the field of one part; whether what it has now is the least.
-fn improve(structure: &Structure, block: &Block, loads: &[BodyLoad], limits: &[f64], part: &mut Part) -> bool {
+/// Replaces the field of one part, whose utilisations may be as large as the first of
+/// the limits, or the second where that cannot be proved; whether it is the least now.
+fn improve(
+    structure: &Structure,
+    block: &Block,
+    loads: &[BodyLoad],
+    (upper, limit): (f64, f64),
+    part: &mut Part,
+) -> bool {
     let Part::Stands { utilisation, wrenches, demands, mechanism, .. } = part else { return false };
     if block.bodies.iter().all(|&body| loads[body].is_zero()) {
         return true;
     }
     let program = Program::new(structure, block, loads, Purpose::Utilisation);
     let problem = Problem { structure, block, loads, program: &program };
-    let before = sum(&problem, wrenches, demands);
-    if before == 0.0 {
+    let before = Proved { upper: utilisation.upper, sum: sum(&problem, wrenches, demands), field: wrenches };
+    if before.sum == 0.0 {
         return true;
     }
     let unit_mechanism = (utilisation.lower > 0.0).then_some(&mechanism[..]);
-    for &limit in limits {
-        let least = Least::new(&problem, limit, before);
+    for cap in [upper, upper + GIVEN * (limit - upper)] {
+        let least = Least::new(&problem, cap, before.sum);
         for attempt in &ATTEMPTS {
-            let Some((mut field, iterate)) = least.solve(attempt) else { continue };
-            restore(structure, block, &program, loads, &iterate, &mut field, &vec![false; block.links.len()]);
-            let Some((mut upper, mut found)) = problem.upper_bound(&field, unit_mechanism, 0.0) else { continue };
-            if upper > limit {
-                // Demands are convex: a share of the other field brings it back below the limit.
-                let share = (upper - limit) / (upper - utilisation.upper) * (1.0 + 1e-3);
-                if !(utilisation.upper < limit && share <= MIXED) {
-                    continue;
-                }
-                for (wrench, proved) in field.iter_mut().zip(&*wrenches) {
-                    *wrench = *wrench * (1.0 - share) + *proved * share;
-                }
-                let Some(mixed) = problem.upper_bound(&field, unit_mechanism, 0.0) else { continue };
-                (upper, found) = mixed;
-            }
-            if upper <= limit && sum(&problem, &field, &found) <= before * (1.0 + NO_MORE) {
+            if let Some((field, iterate)) = least.solve(attempt)
+                && let Some((upper, found, field)) = prove(&problem, field, &iterate, unit_mechanism, limit, &before)
+            {
                 utilisation.upper = utilisation.upper.max(upper);
                 (*wrenches, *demands) = (field, found);
                 return true;
@@ -122,6 +121,41 @@ fn improve(structure: &Structure, block: &Block, loads: &[BodyLoad], limits: &[f
         }
     }
     false
+}
+
+/// The field that proved a block's bracket.
+struct Proved<'f> {
+    upper: f64,
+    sum: f64,
+    field: &'f [Wrench],
+}
+
+/// Makes a field balance and brings it below `limit`: its upper bound, its demands and
+/// itself. `None` where that fails, or where its sum is no less than it was `before`.
+fn prove(
+    problem: &Problem<'_>,
+    mut field: Vec<Wrench>,
+    iterate: &Iterate,
+    unit_mechanism: Option<&[Twist]>,
+    limit: f64,
+    before: &Proved<'_>,
+) -> Option<(f64, Vec<f64>, Vec<Wrench>)> {
+    let Problem { structure, block, loads, program } = *problem;
+    restore(structure, block, program, loads, iterate, &mut field, &vec![false; block.links.len()]);
+    let (mut upper, mut demands) = problem.upper_bound(&field, unit_mechanism, 0.0)?;
+    if upper > limit {
+        // Demands are convex: a share of the other field brings it back below the limit.
+        let share = (upper - limit) / (upper - before.upper) * (1.0 + 1e-3);
+        if !(before.upper < limit && share <= MIXED) {
+            return None;
+        }
+        for (wrench, proved) in field.iter_mut().zip(before.field) {
+            *wrench = *wrench * (1.0 - share) + *proved * share;
+        }
+        (upper, demands) = problem.upper_bound(&field, unit_mechanism, 0.0)?;
+    }
+    let less = upper <= limit && sum(problem, &field, &demands) <= before.sum * (1.0 + NO_MORE);
+    less.then_some((upper, demands, field))
 }
 
 /// Strengths that a field demands and normal forces of its contacts, added up, in N.
@@ -167,6 +201,9 @@ impl<'p> Least<'p> {
         let preload = |(index, link): (usize, &Link)| match *link {
             Link::Connection(i) => {
                 let (scale, rated) = (program.scales.link[index], strength(structure, i));
+                if limit == 0.0 {
+                    return None;
+                }
                 // No strength of the least sum is above the whole of it.
                 let limit = (limit * rated < 2.0 * known).then_some(limit * rated / scale);
                 Some(Preload { link: index, scale, t: scale / (rated * program.t_scale), limit })
