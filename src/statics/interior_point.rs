@@ -101,7 +101,7 @@ impl<'p> InteriorPoint<'p> {
         // No wrench anywhere, and the same complementarity in every cone.
         for group in groups.iter().filter(|group| group.cone != Cone::Free) {
             cost[group.first] = -inset / heads;
-            x[group.first] = group.rest.max(START);
+            x[group.first] = if group.len == 6 { group.rest.max(START) } else { START };
             s[group.first] = START / x[group.first];
         }
         cost[size - 1] = 1.0;

@@ -154,7 +154,7 @@ mod tests {
         for k in 0..3 {
             assert!(force_off[k] <= error.force[k] + input * rounded.force_size[k]);
             assert!(torque_off[k] <= error.torque[k] + input * rounded.torque_size[k]);
-            assert!(error.torque[k] <= 1e-3 * f64::from(count) * f64::EPSILON * rounded.torque_size[k]);
+            assert!(error.torque[k] <= f64::from(count) * f64::EPSILON * rounded.torque_size[k]);
         }
     }
 }

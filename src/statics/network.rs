@@ -94,7 +94,7 @@ impl Network {
             }
         }
         let passes = |links: &Vec<usize>| {
-            in_series && links.len() == 2 && links[0] != links[1] && links.iter().all(|&link| program.rigid[link])
+            in_series && links.len() == 2 && links[0] != links[1] && links.iter().all(|&link| program.in_series[link])
         };
         let mut count = 0;
         let junction: Vec<Option<usize>> = incident

@@ -154,9 +154,10 @@ pub(super) struct Program {
     pub frames: Vec<LinkFrame>,
     /// Centre of mass of each of the block's bodies in W.
     pub coms: Vec<Vec3>,
-    /// Whether each link, if strong enough, holds its two bodies to each other in
-    /// every direction.
-    pub rigid: Vec<bool>,
+    /// Whether each link may be part of a chain: if it is strong enough, it holds its
+    /// two bodies to each other in every direction, and its flexibility is known to
+    /// the last digits (that of a face is the inverse of a sum over its points).
+    pub in_series: Vec<bool>,
     /// Share of its strength that each link may use.
     shares: Vec<f64>,
 }
@@ -224,11 +225,14 @@ impl Program {
                 })
             })
             .collect();
-        let rigid = block.links.iter().map(|&link| match link {
-            Link::Connection(i) => structure.connectors[structure.connections[i].connector].model.is_rigid(),
+        let in_series = block.links.iter().map(|&link| match link {
+            Link::Connection(i) => match &structure.connectors[structure.connections[i].connector].model {
+                Model::Patch { .. } => false,
+                model @ (Model::Cone { .. } | Model::Box { .. }) => model.is_rigid(),
+            },
             Link::Contact(_) => false,
         });
-        let rigid = rigid.collect();
+        let in_series = in_series.collect();
         Self {
             purpose: Purpose::Utilisation,
             groups: Vec::new(),
@@ -242,7 +246,7 @@ impl Program {
             scales,
             frames,
             coms: block.bodies.iter().map(|&body| structure.bodies[body].com).collect(),
-            rigid,
+            in_series,
             shares: vec![1.0; block.links.len()],
         }
     }
@@ -426,11 +430,13 @@ impl Program {
     }
 }
 
-/// Strength that a unit of force demands in the direction in which that is most.
+/// By how much a force sideways demands more of a connector than one along it, where
+/// that is far more.
 fn leverage(model: &Model) -> f64 {
+    const ORDINARY: f64 = 0.1;
     match model {
-        Model::Cone { friction, .. } => friction.iter().map(|mu| 1.0 / mu).fold(1.0, f64::max),
-        Model::Patch { friction, .. } if *friction > 0.0 => (1.0 / friction).max(1.0),
+        Model::Cone { friction: [a, b], .. } => (ORDINARY / a.min(*b)).max(1.0),
+        Model::Patch { friction, .. } if *friction > 0.0 => (ORDINARY / friction).max(1.0),
         Model::Box { .. } | Model::Patch { .. } => 1.0,
     }
 }

@@ -212,8 +212,8 @@ fn least_degree(bodies: usize, pairs: impl Iterator<Item = (usize, usize)>) -> (
 /// Overwrites the lower triangle with the Cholesky factor.
 fn cholesky(matrix: &mut Matrix, least: &[f64; 6]) {
     for c in 0..6 {
-        // Nothing but rounding is left: let this component rest (Wright 1999).
-        let root = if matrix[c][c] > least[c] { matrix[c][c].sqrt() } else { AT_REST };
+        // Less than nothing is left, all of it rounding: let this component rest (Wright 1999).
+        let root = if matrix[c][c] > 0.0 { matrix[c][c].max(least[c]).sqrt() } else { AT_REST };
         matrix[c][c] = root;
         for entry in &mut matrix[c][c + 1..] {
             *entry /= root;
