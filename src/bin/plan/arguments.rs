@@ -107,6 +107,10 @@ pub struct CheckArguments {
     /// Write a certificate/1 document that proves the verdict to anyone: see `plan verify`
     #[arg(long, value_name = "FILE")]
     pub certificate: Option<PathBuf>,
+    /// Of all states at the same utilisation show the one with the least sum of forces, and
+    /// which connections are at their limit
+    #[arg(long)]
+    pub full: bool,
     /// How many of the most loaded connections to show
     #[arg(long, value_name = "N", default_value_t = 10)]
     pub top: usize,

@@ -20,7 +20,7 @@ pub(super) use catalogue::{BodyType, Catalogue, CatalogueFormat, Faces, ModuleTy
 pub(super) use certificate::{
     Carried, CarriedPoints, CarriedWrench, Certificate, CertificateFormat, Mechanism, Stress, Twist,
 };
-pub(super) use check::{Check, CheckFormat, CheckedConnection, CheckedContact, LeftOut, Verdict, Wrench};
+pub(super) use check::{Check, CheckFormat, CheckedConnection, CheckedContact, Distribution, LeftOut, Verdict, Wrench};
 pub(super) use configuration::{
     CatalogueRef, Configuration, ConfigurationFormat, Connections, Environment, FrameMatch, Ground, Match, Module,
     ModuleLoad, ModuleMatch, Obstacle, PairConnection, Require, RolledConnection,
