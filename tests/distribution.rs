@@ -81,26 +81,34 @@ fn the_utilisation_stays_and_the_sum_does_not_grow() {
     assert!(less * 3 >= all, "only {less} of {all} have a lesser sum");
 }
 
-/// The paper adds the sum with a small weight, which gives up a little of the utilisation
-/// for it: where it gave up next to nothing, both sums are the same.
+/// The paper adds the sum with a small weight, and gives up some of the utilisation for
+/// it. Where that is no more than our bracket leaves open, our sum is no more than 2 %
+/// above the paper's; and the paper's objective is no more at its state than at ours.
 #[test]
 fn the_papers_weighted_program_agrees() {
-    let mut compared = 0;
+    let (mut compared, mut equal) = (0, 0);
     for kind in [Kind::Ordinary, Kind::Redundant, Kind::Standing] {
-        for (recipe, s, value) in solved(kind, 0..40).filter(|(recipe, ..)| recipe.bodies <= 8) {
-            let weight = 1e-4 * value.utilisation.upper.clamp(1e-3, 1.0);
-            let paper::Answer::Utilisation(alone) = paper::solve(&s, 1e-10) else { continue };
-            let (paper::Answer::Utilisation(t), least) = paper::solve_weighted(&s, 1e-10, weight) else { continue };
+        for (recipe, s, value) in solved(kind, 0..60).filter(|(recipe, ..)| recipe.bodies <= 8) {
+            let weight = 1e-5 * value.utilisation.upper.clamp(1e-3, 1.0);
+            let (paper::Answer::Utilisation(t), least) = paper::solve_weighted(&s, 1e-11, weight) else { continue };
+            let paper::Answer::Utilisation(alone) = paper::solve(&s, 1e-11) else { continue };
+            assert!(alone <= t + 1e-8 * t.max(1.0), "{recipe:?}: {alone} is not the least, {t}");
             let full = full(&s);
-            if full.distribution == Distribution::Least && (t - alone).abs() < 1e-6 * alone.max(1e-3) {
-                let found = sum(&s, &full);
-                let rounding = 1e-6 * paper::typical_force(&s);
-                assert!((found - least).abs() <= 2e-3 * least + rounding, "{recipe:?}: {found} and {least}");
+            if full.distribution != Distribution::Least {
+                continue;
+            }
+            let (found, upper) = (sum(&s, &full), full.utilisation.upper);
+            let (newton, rounding) = (weight / paper::typical_force(&s), 1e-9 * t.max(1.0));
+            assert!(t + newton * least <= upper + newton * found + rounding, "{recipe:?}: {found} below {least}");
+            if t <= upper + 1e-9 * upper.max(1.0) {
+                let small = 1e-6 * paper::typical_force(&s);
+                assert!(found <= least * 1.02 + small, "{recipe:?}: {found} is more than {least}");
                 compared += 1;
+                equal += usize::from(found >= least * (1.0 - 1e-3));
             }
         }
     }
-    assert!(compared >= 20, "{compared} compared");
+    assert!(compared >= 20 && equal * 4 >= compared * 3, "{compared} compared, {equal} equal");
 }
 
 #[test]
