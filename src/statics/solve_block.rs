@@ -115,7 +115,7 @@ pub(super) fn assess_block(structure: &Structure, block: &Block, loads: &[BodyLo
             break;
         }
         if let Some(iterate) = conic::solve(&program, attempt) {
-            best.improve(&problem, &iterate, question);
+            best.bound(&problem, &iterate);
         }
     }
     if best.upper.is_infinite() && !best.answers(question) {
@@ -254,7 +254,17 @@ impl Best {
         Rung::Solved
     }
 
+    /// Bounds from an iterate, and from what its motion says about clusters.
     fn improve(&mut self, problem: &Problem<'_>, iterate: &Iterate, question: Question) {
+        self.bound(problem, iterate);
+        if !self.answers(question) && self.upper.is_finite() {
+            self.fuse(problem, &problem.program.twists(&iterate.v), question);
+        }
+        self.uncross();
+    }
+
+    /// Bounds from an iterate.
+    fn bound(&mut self, problem: &Problem<'_>, iterate: &Iterate) {
         let twists = problem.program.twists(&iterate.v);
         if !self.keep_lower(problem, &twists) {
             self.mix(problem, &twists);
@@ -264,9 +274,10 @@ impl Best {
                 break;
             }
         }
-        if !self.answers(question) && self.upper.is_finite() {
-            self.fuse(problem, &twists, question);
-        }
+        self.uncross();
+    }
+
+    fn uncross(&mut self) {
         // Each is proved up to the tolerance on balance; where they cross by
         // that, the truth lies between them.
         if self.lower > self.upper {

@@ -101,7 +101,7 @@ mod tests {
                 // A second time changes next to nothing, a face's preload being known to a few digits less.
                 let kept = wrench;
                 put_back(&structure, Link::Connection(0), &mut wrench, 0.8);
-                assert!((wrench.force - kept.force).norm() < 1e-6 * 20.0, "{kept:?} {wrench:?}");
+                assert!((wrench.force - kept.force).norm() <= 1e-3 * kept.force.norm(), "{kept:?} {wrench:?}");
             }
         }
     }
