@@ -34,6 +34,29 @@ fn reports_fit_a_terminal_and_name_what_matters() {
 }
 
 #[test]
+fn only_the_full_report_chooses_a_state() {
+    let check = |more: &[&str]| stdout(&plan(&[&["check", "structures/suspension_76.json"], more].concat()));
+    let (plain, full) = (check(&["--top", "84"]), check(&["--top", "84", "--full"]));
+    assert!(!plain.contains("least sum") && !plain.contains("at its limit"), "{plain}");
+    assert!(full.contains("the least sum of strengths") && full.contains("0.299282"), "{full}");
+    assert!(full.lines().all(|line| line.chars().count() <= 80), "{full}");
+    for (more, expected) in [(&["--json"][..], "proof"), (&["--json", "--full"], "least")] {
+        let value: serde_json::Value = serde_json::from_str(&check(more)).unwrap();
+        assert_eq!(value["distribution"], expected);
+        let connections = value["connections"].as_array().unwrap();
+        assert!(connections.iter().all(|c| !(c["critical"] == true && c["at_limit"] == true)));
+    }
+}
+
+/// Nine equal magnets share a weight equally, and each of them at its limit is said to be.
+#[test]
+fn the_full_report_tells_critical_from_loaded() {
+    let report = stdout(&plan(&["check", "--full", "structures/hang_nine_parallel.json"]));
+    let named = |row: &&str| row.contains("critical") || row.contains("at its limit");
+    assert_eq!(report.lines().filter(named).count(), 9, "{report}");
+}
+
+#[test]
 fn the_json_report_is_json_whatever_the_verdict() {
     for name in ["suspension_76", "overhang_out", "no_gravity"] {
         let report = stdout(&plan(&["check", "--json", &format!("structures/{name}.json")]));

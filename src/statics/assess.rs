@@ -3,9 +3,10 @@
 
 use crate::spatial::{Twist, Vec3, Wrench};
 
-use super::assessment::{Assessment, Bracket, ConnectionState, LeftOut, Question, Verdict};
+use super::assessment::{Assessment, Bracket, ConnectionState, Distribution, LeftOut, Question, Verdict};
 use super::blocks::{Block, Blocks, Link, Vertex, cut};
 use super::closed_form::{Bridge, assess_bridge};
+use super::distribution;
 use super::frame::LinkFrame;
 use super::loads::{BodyLoad, lump, own_loads};
 use super::part::Part;
@@ -137,7 +138,7 @@ fn assess_pieces(
         match knowledge.bound(structure, &pieces.blocks[index], &loads) {
             Some(part) if part.answers(question) => {
                 knowledge.note(&pieces.blocks[index], &part);
-                answer.add(index, part);
+                answer.take(index, part, question);
             }
             _ => open.push(index),
         }
@@ -159,8 +160,9 @@ fn assess_pieces(
         let part = ahead.next().flatten().unwrap_or_else(|| solve(&index));
         answer.count_solved(block);
         knowledge.note(block, &part);
-        answer.add(index, part);
+        answer.take(index, part, question);
     }
+    answer.choose(question, &loads);
     answer.finish()
 }
 
@@ -188,6 +190,9 @@ struct Answer<'s> {
     left_out: LeftOut,
     undecided_because: Option<String>,
     decided_by: Rung,
+    /// The blocks whose fields are still to be chosen.
+    held: Vec<(usize, Part)>,
+    distribution: Distribution,
 }
 
 impl<'s> Answer<'s> {
@@ -209,6 +214,8 @@ impl<'s> Answer<'s> {
             },
             undecided_because: None,
             decided_by: Rung::ClosedForm,
+            held: Vec::new(),
+            distribution: Distribution::Proof,
         }
     }
 
@@ -222,7 +229,7 @@ impl<'s> Answer<'s> {
         self.collapsed
             || match question {
                 Question::Decide(threshold) => self.utilisation.lower > threshold,
-                Question::ToGap(_) => false,
+                Question::ToGap(_) | Question::Full => false,
             }
     }
 
@@ -266,6 +273,27 @@ impl<'s> Answer<'s> {
             self.candidates.push((lower, index, vec![1.0]));
         }
         self.utilisation = self.utilisation.max(bridge.utilisation);
+    }
+
+    /// Adds a block's answer, or keeps it until all are known where `question` is
+    /// about more than the utilisation.
+    fn take(&mut self, index: usize, part: Part, question: Question) {
+        match part {
+            Part::Stands { .. } if question == Question::Full => self.held.push((index, part)),
+            Part::Stands { .. } | Part::Collapses { .. } => self.add(index, part),
+        }
+    }
+
+    /// Chooses the fields of the blocks that were kept, and adds them.
+    fn choose(&mut self, question: Question, loads: &[BodyLoad]) {
+        if question != Question::Full || self.collapsed {
+            return;
+        }
+        let mut held = std::mem::take(&mut self.held);
+        self.distribution = distribution::choose(self.structure, self.blocks, loads, self.utilisation, &mut held);
+        for (index, part) in held {
+            self.add(index, part);
+        }
     }
 
     fn add(&mut self, index: usize, part: Part) {
@@ -377,6 +405,7 @@ impl<'s> Answer<'s> {
             utilisation: self.utilisation,
             connections: self.connections,
             contacts: self.contacts,
+            distribution: self.distribution,
             mechanism: self.mechanism,
             left_out: self.left_out,
             undecided_because,

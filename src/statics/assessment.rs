@@ -3,6 +3,7 @@
 use crate::spatial::{Twist, Vec3, Wrench};
 
 use super::rung::Rung;
+use super::tolerances::AT_LIMIT;
 
 /// An interval that is guaranteed to hold a value, both ends included.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,6 +61,9 @@ pub enum Verdict {
     Undecided,
 }
 
+/// The gap of [`Question::VALUE`].
+const VALUE_GAP: f64 = 1e-7;
+
 /// How tightly a question wants its answer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Question {
@@ -69,18 +73,33 @@ pub enum Question {
     /// The utilisation itself, with a bracket no wider than this share of the
     /// larger of it and 1, and the verdict if that is narrower still.
     ToGap(f64),
+    /// The utilisation as [`Question::VALUE`] wants it and, of all states at that
+    /// utilisation, the one with the least sum of strengths and of normal forces at
+    /// contacts: see [`Distribution`]. Costs one more cone program per block with cycles.
+    Full,
 }
 
 impl Question {
     /// The utilisation to seven digits, ten times tighter than users are promised.
-    pub const VALUE: Self = Self::ToGap(1e-7);
+    pub const VALUE: Self = Self::ToGap(VALUE_GAP);
+
+    /// Width that the bracket may have, as a share of the larger of the utilisation
+    /// and 1.
+    pub(super) fn gap(self) -> f64 {
+        match self {
+            Self::Decide(_) => f64::INFINITY,
+            Self::ToGap(gap) => gap,
+            Self::Full => VALUE_GAP,
+        }
+    }
 
     /// Whether a bracket on the utilisation is as narrow as this asks for.
     pub fn is_answered_by(self, bracket: &Bracket) -> bool {
         let Bracket { lower, upper } = *bracket;
         match self {
             Self::Decide(threshold) => upper <= threshold || lower > threshold,
-            Self::ToGap(gap) => {
+            Self::ToGap(_) | Self::Full => {
+                let gap = self.gap();
                 let straddles_one = lower <= 1.0 && upper > 1.0;
                 upper.is_finite() && upper - lower <= gap * upper.max(1.0) && !straddles_one
             }
@@ -100,6 +119,28 @@ pub struct ConnectionState {
     /// Whether the connection breaks in the collapse mechanism: without more
     /// strength here, the utilisation could not fall.
     pub critical: bool,
+}
+
+/// Which of the balanced fields within the utilisation an answer shows.
+///
+/// Bodies with loops can carry their loads in many ways; those that reach the
+/// utilisation all prove it. What crosses a bridge is the same in all of them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Distribution {
+    /// The field that proved the bracket, and nothing else was asked of it: it may hold
+    /// stress that the loads do not need.
+    Proof,
+    /// The one with the least sum of the strengths of all connections and of the normal
+    /// forces of all contacts, each in N, with no utilisation above the bracket's upper
+    /// end. That the field holds is proved, that its sum is the least is a solver's
+    /// word.
+    Least,
+    /// The same, except that so many blocks with cycles show the field that proved the
+    /// bracket, as no better one could be proved.
+    LeastExcept {
+        /// How many.
+        blocks: usize,
+    },
 }
 
 /// What was left out of the optimisation because the scene did not need it.
@@ -133,6 +174,8 @@ pub struct Assessment {
     pub connections: Vec<ConnectionState>,
     /// Contact forces in N on each contact's `body`, in W, in the structure's order.
     pub contacts: Vec<Vec3>,
+    /// Which state `connections` and `contacts` show.
+    pub distribution: Distribution,
     /// Collapse mechanism: a twist per body (of its centre of mass, in W), in the
     /// structure's order. All zero when nothing limits the structure.
     pub mechanism: Vec<Twist>,
@@ -149,6 +192,16 @@ impl Assessment {
     /// positive is safe); minus infinity when whole-body unstable.
     pub fn margin(&self) -> Bracket {
         Bracket::new(1.0 - self.utilisation.upper, 1.0 - self.utilisation.lower)
+    }
+
+    /// Whether a connection is at its limit without being critical: in the returned
+    /// state its utilisation is the structure's, to a relative 1e-6, but the
+    /// mechanism does not break it, so that another state may spare it. With
+    /// [`Question::Full`] these are the connections that the least sum of forces loads
+    /// fully; a state that merely proves the bracket says little about them.
+    pub fn is_at_limit(&self, connection: usize) -> bool {
+        let (state, largest) = (&self.connections[connection], self.utilisation.upper);
+        !state.critical && largest.is_finite() && largest > 0.0 && state.utilisation >= largest * (1.0 - AT_LIMIT)
     }
 
     /// The connection that the verdict hangs on: of the critical connections,

@@ -72,7 +72,8 @@ pub(super) fn solve(program: &Program, attempt: &Attempt) -> Option<Iterate> {
     Some(Iterate { v, z: variables, t: z[layout.preload_row] })
 }
 
-fn settings(attempt: &Attempt) -> Option<DefaultSettings<f64>> {
+/// Clarabel's settings for `attempt`, whose inset they do not concern.
+pub(super) fn settings(attempt: &Attempt) -> Option<DefaultSettings<f64>> {
     DefaultSettingsBuilder::default()
         .verbose(false)
         .presolve_enable(false)

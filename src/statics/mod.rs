@@ -9,7 +9,8 @@
 //! 3. `program` states every other block as a second-order cone program and
 //!    `interior_point` solves it, with `conic` behind it, a general solver;
 //! 4. `bracket` proves bounds from the fields that come back, after `balance`
-//!    has made the wrenches balance; `collapse` proves that no strength helps.
+//!    has made the wrenches balance; `collapse` proves that no strength helps;
+//! 5. `distribution`, only where it is asked for, chooses among the fields that hold.
 //!
 //! The only module that names `clarabel`. It knows nothing of robots, shapes,
 //! files or plans.
@@ -25,6 +26,7 @@ mod collapse;
 mod conic;
 mod connector;
 mod demand;
+mod distribution;
 mod explain;
 mod frame;
 mod hull;
@@ -55,7 +57,7 @@ mod tolerances;
 mod validate;
 
 pub use assess::{assess, assess_reduced};
-pub use assessment::{Assessment, Bracket, ConnectionState, LeftOut, Question, Verdict};
+pub use assessment::{Assessment, Bracket, ConnectionState, Distribution, LeftOut, Question, Verdict};
 pub use connector::{Connector, Model};
 pub use explain::{Explanation, Remaining, explain};
 pub use near::{Memory, NotNear, assess_keeping, assess_near};

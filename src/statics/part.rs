@@ -48,7 +48,7 @@ impl Part {
         match (self, question) {
             (Self::Collapses { .. }, _) => true,
             (Self::Stands { utilisation, .. }, Question::Decide(threshold)) => utilisation.lower > threshold,
-            (Self::Stands { .. }, Question::ToGap(_)) => false,
+            (Self::Stands { .. }, Question::ToGap(_) | Question::Full) => false,
         }
     }
 }

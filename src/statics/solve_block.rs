@@ -233,7 +233,8 @@ impl Best {
                         self.keep_upper(problem, &method.iterate(), 0.0);
                     }
                 }
-                Question::ToGap(gap) => {
+                Question::ToGap(_) | Question::Full => {
+                    let gap = question.gap();
                     if estimate.error <= NARROW * gap && estimate.error <= WORTHWHILE * tried {
                         tried = estimate.error;
                         let iterate = method.iterate();

@@ -28,3 +28,7 @@ pub(super) const TIE: f64 = 1e-9;
 
 /// How far a unit vector or quaternion may be from unit length.
 pub(super) const UNIT: f64 = 1e-6;
+
+/// Relative distance to the largest utilisation within which a connection counts as
+/// at its limit: ten times what a utilisation may be off.
+pub(super) const AT_LIMIT: f64 = 1e-6;

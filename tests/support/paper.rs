@@ -23,8 +23,15 @@ pub enum Answer {
     GaveUp(f64),
 }
 
-/// Asks the solver at `tolerance`.
+/// Asks the solver at `tolerance` for the utilisation alone.
 pub fn solve(structure: &Structure, tolerance: f64) -> Answer {
+    solve_weighted(structure, tolerance, 0.0).0
+}
+
+/// Asks the solver at `tolerance` for the least utilisation plus `weight` times the
+/// sum, per typical force, of all strengths and of the normal forces of all contacts:
+/// the utilisation and that sum in N.
+pub fn solve_weighted(structure: &Structure, tolerance: f64, weight: f64) -> (Answer, f64) {
     let program = Program::new(structure);
     let (width, height) = (program.columns.len(), program.rhs.len());
     let settings: Option<DefaultSettings<f64>> = DefaultSettingsBuilder::default()
@@ -46,16 +53,22 @@ pub fn solve(structure: &Structure, tolerance: f64) -> Answer {
     let matrix = CscMatrix::new(height, width, starts, rows, values);
     let mut objective = vec![0.0; width];
     objective[0] = 1.0;
+    for &column in &program.further {
+        objective[column] = weight;
+    }
     let nothing = CscMatrix::zeros((width, width));
     let solver =
         settings.and_then(|s| DefaultSolver::new(&nothing, &objective, &matrix, &program.rhs, &program.cones, s).ok());
-    let Some(mut solver) = solver else { return Answer::GaveUp(f64::NAN) };
+    let Some(mut solver) = solver else { return (Answer::GaveUp(f64::NAN), f64::NAN) };
     solver.solve();
-    match solver.solution.status {
-        SolverStatus::Solved => Answer::Utilisation(solver.solution.obj_val),
+    let x = &solver.solution.x;
+    let sum = program.further.iter().map(|&column| x[column]).sum::<f64>() * program.force;
+    let answer = match solver.solution.status {
+        SolverStatus::Solved => Answer::Utilisation(x[0]),
         SolverStatus::PrimalInfeasible => Answer::Infeasible,
-        _ => Answer::GaveUp(solver.solution.obj_val),
-    }
+        _ => Answer::GaveUp(x[0]),
+    };
+    (answer, sum)
 }
 
 /// `A x + s = b`, s in the cones; x_0 is the utilisation.
@@ -63,6 +76,8 @@ struct Program {
     columns: Vec<Vec<(usize, f64)>>,
     rhs: Vec<f64>,
     cones: Vec<SupportedConeT<f64>>,
+    /// Strengths and normal forces of contacts: the further terms of the objective.
+    further: Vec<usize>,
     /// Forces are counted in weights of a body, lengths in levers.
     force: f64,
     length: f64,
@@ -74,6 +89,7 @@ impl Program {
             columns: vec![Vec::new()],
             rhs: Vec::new(),
             cones: Vec::new(),
+            further: Vec::new(),
             force: typical_force(structure),
             length: typical_length(structure),
         };
@@ -169,6 +185,7 @@ impl Program {
         let at = connection.frame.translation.vector;
         let (child, parent) = (self.columns(6), self.columns(6));
         let (normal, adhesion, strength) = (self.columns(1), self.columns(1), self.columns(1));
+        self.further.push(strength);
         self.act(structure, first_row, connection.child, (at, &axes), child, true);
         self.act(structure, first_row, connection.parent, (at, &axes), parent, true);
         self.tie(child, parent, 6);
@@ -267,6 +284,7 @@ impl Program {
         let y = normal.cross(&x).normalize();
         let axes = Matrix3::from_columns(&[y.cross(&normal), y, normal]);
         let force = self.columns(3);
+        self.further.push(force + 2);
         self.act(structure, first_row, Anchor::Body(contact.body), (contact.position, &axes), force, false);
         self.friction_cone(force, contact.friction);
         if let Anchor::Body(_) = contact.against {

@@ -110,6 +110,10 @@ pub struct CheckArguments {
     /// Say what was left out of the optimisation and why, and what remained
     #[arg(long)]
     pub explain: bool,
+    /// Of all states at the same utilisation show the one with the least sum of forces, and
+    /// which connections are at their limit
+    #[arg(long)]
+    pub full: bool,
     /// How many of the most loaded connections to show
     #[arg(long, value_name = "N", default_value_t = 10)]
     pub top: usize,

@@ -8,7 +8,7 @@ use std::{fs, io};
 
 use steadfast::certificate::issue;
 use steadfast::io::{CertificateDocument, Checkable, NamedStructure, read_checkable, write_certificate, write_check};
-use steadfast::statics::{Assessment, Bracket, Question, Reductions, Verdict, assess, explain};
+use steadfast::statics::{Assessment, Bracket, Distribution, Question, Reductions, Verdict, assess, explain};
 
 use crate::arguments::CheckArguments;
 use crate::exit::Exit;
@@ -28,7 +28,8 @@ pub fn run(arguments: &CheckArguments) -> io::Result<Exit> {
         Err(diagnostics) => return output::bad_input(&diagnostics, arguments.json),
     };
     let clock = Instant::now();
-    let answer = match assess(&named.structure, Question::VALUE) {
+    let question = if arguments.full { Question::Full } else { Question::VALUE };
+    let answer = match assess(&named.structure, question) {
         Ok(answer) => answer,
         Err(problems) => {
             let reasons = problems.iter().map(|problem| format!("{}: {}", problem.place, problem.problem));
@@ -140,7 +141,7 @@ fn loaded(text: &mut String, named: &NamedStructure, answer: &Assessment, top: u
                 format!("{:.4}", state.utilisation),
                 norm(state.wrench.force),
                 norm(state.wrench.torque),
-                if state.critical { "critical" } else { "" }.to_string(),
+                role(answer, index).to_string(),
             ]
         })
         .collect();
@@ -148,6 +149,31 @@ fn loaded(text: &mut String, named: &NamedStructure, answer: &Assessment, top: u
         let _ = writeln!(text, "\nthe most loaded of {} connections", order.len());
         text.push_str(&table(&["connection", "utilisation", "force N", "torque N m", ""], &rows));
     }
+    distribution(text, answer);
+}
+
+/// What a connection is to the verdict. A state that was not chosen says nothing about
+/// who has to be at the limit.
+fn role(answer: &Assessment, connection: usize) -> &'static str {
+    if answer.connections[connection].critical {
+        "critical"
+    } else if answer.distribution != Distribution::Proof && answer.is_at_limit(connection) {
+        "at its limit"
+    } else {
+        ""
+    }
+}
+
+fn distribution(text: &mut String, answer: &Assessment) {
+    let _ = match answer.distribution {
+        Distribution::Proof => Ok(()),
+        Distribution::Least => {
+            writeln!(text, "the state at this utilisation with the least sum of strengths and pressures")
+        }
+        Distribution::LeastExcept { blocks } => {
+            writeln!(text, "the least sum of strengths and pressures, except in blocks left as proved: {blocks}")
+        }
+    };
 }
 
 fn left_out(text: &mut String, named: &NamedStructure, answer: &Assessment, seconds: f64) {

@@ -32,6 +32,8 @@ pub(crate) struct Check {
     pub(crate) margin: Option<Bracket>,
     /// Strength by connector with which it is proved to stand; null when none is known.
     pub(crate) required_strength_n: Option<IndexMap<String, Real>>,
+    /// Which of the states with this utilisation is shown.
+    pub(crate) distribution: Distribution,
     /// The connections in one state with this utilisation; empty when whole-body-unstable.
     pub(crate) connections: Vec<CheckedConnection>,
     /// The contacts in that state; empty when whole-body-unstable.
@@ -59,6 +61,18 @@ pub(crate) enum Verdict {
     Undecided,
 }
 
+/// Which of the states with one utilisation is shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum Distribution {
+    /// The one that proved the utilisation.
+    Proof,
+    /// The one with the least sum of the connections' strengths and the contacts' normal forces.
+    Least,
+    /// The same, except that some parts show what proved the utilisation.
+    LeastInPart,
+}
+
 /// A connection in the returned state.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -73,6 +87,8 @@ pub(crate) struct CheckedConnection {
     pub(crate) wrench: Wrench,
     /// Whether it breaks in the collapse mechanism.
     pub(crate) critical: bool,
+    /// Whether it is as loaded as the utilisation without being critical: another state may spare it.
+    pub(crate) at_limit: bool,
 }
 
 /// A force and a torque.

@@ -21,7 +21,8 @@ pub(super) use certificate::{
     Carried, CarriedPoints, CarriedWrench, Certificate, CertificateFormat, Mechanism, Stress, Twist,
 };
 pub(super) use check::{
-    Check, CheckFormat, CheckedConnection, CheckedContact, Explanation, LeftOut, RemainingBlock, Verdict, Wrench,
+    Check, CheckFormat, CheckedConnection, CheckedContact, Distribution, Explanation, LeftOut, RemainingBlock, Verdict,
+    Wrench,
 };
 pub(super) use configuration::{
     CatalogueRef, Configuration, ConfigurationFormat, Connections, Environment, FrameMatch, Ground, Match, Module,

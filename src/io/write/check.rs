@@ -3,7 +3,7 @@
 use super::super::document::NamedStructure;
 use super::super::wire::{self, Real};
 use super::{bracket, vector};
-use crate::statics::{Assessment, ConnectionState, Explanation, Remaining, Verdict};
+use crate::statics::{Assessment, ConnectionState, Distribution, Explanation, Remaining, Verdict};
 
 /// What a margin is found without.
 const NOT_ASKED_FOR: [&str; 2] = ["secondary objective", "distribution of stress"];
@@ -29,7 +29,11 @@ pub(super) fn wire(
         utilisation: held.then(|| bracket(assessment.utilisation)),
         margin: held.then(|| bracket(assessment.margin())),
         required_strength_n: (held && upper.is_finite()).then(strengths),
-        connections: connections.map(|(state, id)| connection(id, state)).collect(),
+        distribution: distribution(assessment.distribution),
+        connections: connections
+            .enumerate()
+            .map(|(i, (state, id))| connection(id, state, assessment.is_at_limit(i)))
+            .collect(),
         contacts: contacts
             .map(|(force, id)| wire::CheckedContact { id: id.clone(), force_n: vector(*force) })
             .collect(),
@@ -86,8 +90,16 @@ pub(super) fn verdict(verdict: Verdict) -> wire::Verdict {
     }
 }
 
+fn distribution(distribution: Distribution) -> wire::Distribution {
+    match distribution {
+        Distribution::Proof => wire::Distribution::Proof,
+        Distribution::Least => wire::Distribution::Least,
+        Distribution::LeastExcept { .. } => wire::Distribution::LeastInPart,
+    }
+}
+
 // A latch that cannot carry a component at all demands an infinite strength for it.
-fn connection(id: &str, state: &ConnectionState) -> wire::CheckedConnection {
+fn connection(id: &str, state: &ConnectionState, at_limit: bool) -> wire::CheckedConnection {
     let finite = |value: f64| (value != f64::INFINITY).then_some(Real(value));
     wire::CheckedConnection {
         id: id.to_string(),
@@ -95,5 +107,6 @@ fn connection(id: &str, state: &ConnectionState) -> wire::CheckedConnection {
         utilisation: finite(state.utilisation),
         wrench: wire::Wrench { force_n: vector(state.wrench.force), torque_nm: vector(state.wrench.torque) },
         critical: state.critical,
+        at_limit,
     }
 }

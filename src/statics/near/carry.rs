@@ -59,7 +59,7 @@ impl<'s> Carried<'s> {
         let bodies = structure.bodies.len();
         let threshold = match question {
             Question::Decide(threshold) => threshold,
-            Question::ToGap(_) => 1.0,
+            Question::ToGap(_) | Question::Full => 1.0,
         };
         Self {
             structure,

@@ -25,7 +25,7 @@ fn level(question: Question) -> Option<f64> {
     match question {
         // Nothing can be put into a cone without any room.
         Question::Decide(threshold) => (threshold > 0.0).then_some(threshold),
-        Question::ToGap(_) => None,
+        Question::ToGap(_) | Question::Full => None,
     }
 }
 
