@@ -122,7 +122,7 @@ pub(super) fn assess_block(
             break;
         }
         if let Some(iterate) = conic::solve(&program, attempt) {
-            best.bound(&problem, &iterate);
+            best.improve(&problem, &iterate, question);
         }
     }
     if best.upper.is_infinite() && !best.answers(question) {
@@ -266,15 +266,6 @@ impl Best {
 
     /// Bounds from an iterate, and from what its motion says about clusters.
     fn improve(&mut self, problem: &Problem<'_>, iterate: &Iterate, question: Question) {
-        self.bound(problem, iterate);
-        if !self.answers(question) && self.upper.is_finite() {
-            self.fuse(problem, &problem.program.twists(&iterate.v), question);
-        }
-        self.uncross();
-    }
-
-    /// Bounds from an iterate.
-    fn bound(&mut self, problem: &Problem<'_>, iterate: &Iterate) {
         let twists = problem.program.twists(&iterate.v);
         if !self.keep_lower(problem, &twists) {
             self.mix(problem, &twists);
@@ -284,10 +275,9 @@ impl Best {
                 break;
             }
         }
-        self.uncross();
-    }
-
-    fn uncross(&mut self) {
+        if !self.answers(question) && self.upper.is_finite() {
+            self.fuse(problem, &twists, question);
+        }
         // Each is proved up to the tolerance on balance; where they cross by
         // that, the truth lies between them.
         if self.lower > self.upper {
