@@ -94,17 +94,16 @@ pub fn assess_keeping(
 ///     plate.connections.push(Connection { parent: Anchor::World, child: Anchor::Body(0), connector: 0, frame });
 /// }
 /// let question = Question::Decide(1.0);
-/// let (answer, memory) = assess_keeping(&plate, question)?;
+/// let (answer, memory) = assess_keeping(&plate, question).expect("the data is sound");
 /// let mut tally = Tally::default();
 /// tally.count(&answer);
 ///
 /// // Without one of them the other three hold it: no need to solve again.
 /// plate.connections.pop();
-/// let (answer, _memory) = assess_near(&plate, question, &memory, &[Some(0)])?;
+/// let (answer, _memory) = assess_near(&plate, question, &memory, &[Some(0)]).expect("the same plate");
 /// tally.count(&answer);
 /// assert_eq!(answer.verdict, Verdict::Stable);
 /// assert_eq!(tally.of(Rung::CarriedOver), 1);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn assess_near(
     structure: &Structure,
