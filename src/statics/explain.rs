@@ -118,9 +118,9 @@ fn remaining(structure: &Structure, block: &Block, loads: &[BodyLoad], reduction
         bodies: block.bodies.len(),
         connections,
         contacts: block.links.len() - connections,
-        chains: network.chains_of_several(),
+        chains: network.chains(),
         bodies_in_chains: block.bodies.len() - network.junctions(),
-        unknown_wrenches: network.chains(),
+        unknown_wrenches: network.unknown_wrenches(),
         equations: 6 * network.junctions(),
         ..Remaining::default()
     };

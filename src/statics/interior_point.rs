@@ -1,21 +1,18 @@
 //! A primal-dual interior-point method for a block's program.
 //!
 //! Nesterov-Todd direction, Mehrotra's predictor and corrector, infeasible
-//! start; one factorisation of 6 x 6 blocks on the body graph per iteration (see
-//! `normal`), where a general solver factorises a system of all variables. It
+//! start; one factorisation of blocks of a body's balances on the body graph
+//! per iteration (see `system`), where a general solver factorises a system of all variables. It
 //! has no certificate for programs without a solution: it gets stuck, and `conic`,
 //! which answers the same question, is asked instead. As with `conic`, nothing
 //! that comes back is believed: see `bracket`.
 
 use super::conic::Iterate;
-use super::normal::{Metric, Normal, Solution, add_forces, array, velocities};
-use super::program::{Cone, Form, Group, Program};
+use super::network::Network;
+use super::parts::parts;
+use super::program::Program;
 use super::respect::respect_unlimited;
-use super::second_order::{aim, dot, shortened_step};
-
-/// Scaled forces, opening velocities and t at the start: about what the spanning
-/// tree carries.
-const START: f64 = 1.0;
+use super::system::{Residuals, System};
 
 /// Largest step towards the boundary of a cone, as a share of the way.
 const SHORTEN: f64 = 0.99;
@@ -29,17 +26,7 @@ const LARGEST: f64 = 1e9;
 /// The method at work on a program: `x = (z, t)` and `s = c + A' v` inside their cones.
 pub(super) struct InteriorPoint<'p> {
     program: &'p Program,
-    normal: Normal<'p>,
-    /// The program's groups, and t's.
-    groups: Vec<Group>,
-    /// Number of cones.
-    degree: f64,
-    /// Right-hand side: the loads, negative.
-    wanted: Vec<f64>,
-    cost: Vec<f64>,
-    x: Vec<f64>,
-    s: Vec<f64>,
-    v: Vec<f64>,
+    system: System<6>,
     residuals: Residuals,
 }
 
@@ -55,85 +42,28 @@ pub(super) struct Estimate {
     pub imbalance: f64,
 }
 
-/// What an iterate lacks.
-struct Residuals {
-    /// `-L - A x`.
-    balance: Vec<f64>,
-    /// `c + A' v - s`.
-    opening: Vec<f64>,
-    gap: f64,
-    /// The objective as the forces and as the motion give it.
-    primal: f64,
-    dual: f64,
-}
-
-fn largest(v: &[f64]) -> f64 {
-    v.iter().fold(0.0_f64, |m, x| m.max(x.abs()))
-}
-
-/// A direction of `x`, `s` and `v`.
-struct Direction {
-    x: Vec<f64>,
-    s: Vec<f64>,
-    v: Vec<f64>,
-}
-
 impl<'p> InteriorPoint<'p> {
     /// The start on `program`, with opening velocities inset by `inset` over all
     /// cones as in [`Attempt`](super::conic::Attempt).
     pub(super) fn new(program: &'p Program, inset: f64, in_series: bool) -> Self {
-        let normal = Normal::new(program, in_series);
-        let size = program.variables + 1;
-        let mut groups = program.groups.clone();
-        let heads = groups.iter().filter(|group| group.cone != Cone::Free).count() as f64;
-        groups.push(Group {
-            cone: Cone::NonNegative,
-            first: size - 1,
-            len: 1,
-            link: 0,
-            form: Form::Slack,
-            scale: 1.0,
-            rest: START,
-            tie_row: None,
-            ties: None,
-        });
-        let (mut cost, mut x, mut s) = (vec![0.0; size], vec![0.0; size], vec![0.0; size]);
-        // No wrench anywhere, and the same complementarity in every cone.
-        for group in groups.iter().filter(|group| group.cone != Cone::Free) {
-            cost[group.first] = -inset / heads;
-            x[group.first] = if group.len == 6 { group.rest.max(START) } else { START };
-            s[group.first] = START / x[group.first];
-        }
-        cost[size - 1] = 1.0;
-        let wanted = program.load.iter().map(|load| -load).collect();
-        let v = vec![0.0; program.rows()];
-        let residuals = Residuals { balance: Vec::new(), opening: Vec::new(), gap: 0.0, primal: 0.0, dual: 0.0 };
-        let mut start = Self { program, normal, groups, degree: heads + 1.0, wanted, cost, x, s, v, residuals };
-        start.residuals = start.residuals();
-        start
-    }
-
-    fn residuals(&self) -> Residuals {
-        let negative: Vec<f64> = self.x.iter().map(|x| -x).collect();
-        let mut balance = self.wanted.clone();
-        add_forces(self.program, &negative, &mut balance);
-        let mut opening = velocities(self.program, &self.v);
-        for ((opening, cost), s) in opening.iter_mut().zip(&self.cost).zip(&self.s) {
-            *opening += cost - s;
-        }
-        let (primal, dual) = (dot(&self.cost, &self.x), -dot(&self.wanted, &self.v));
-        Residuals { balance, opening, gap: dot(&self.x, &self.s), primal, dual }
+        let parts = parts(program);
+        let bodies = 6 * program.scales.force.len();
+        let by_body = |rows: &[f64]| rows[..bodies].as_chunks::<6>().0.to_vec();
+        let network = Network::new(program, in_series);
+        let tie = |row: usize| program.preload[row];
+        let mut system = System::new(&parts, &by_body(&program.load), by_body(&program.preload), tie, network, inset);
+        let residuals = system.compare();
+        Self { program, system, residuals }
     }
 
     /// How good the iterate is.
     pub(super) fn estimate(&self) -> Estimate {
-        let Residuals { balance, opening, gap, primal, dual } = &self.residuals;
+        let Residuals { gap, imbalance, opening, primal, dual, t } = self.residuals;
         let t_scale = self.program.t_scale;
         let scale = primal.abs().max(dual.abs()) + t_scale.recip().min(1.0);
-        let imbalance = largest(balance);
         Estimate {
-            error: gap.max(imbalance).max(1e2 * largest(opening)) / scale,
-            upper: self.x[self.program.variables] * t_scale,
+            error: gap.max(imbalance).max(1e2 * opening) / scale,
+            upper: t * t_scale,
             lower: dual * t_scale,
             imbalance,
         }
@@ -142,144 +72,35 @@ impl<'p> InteriorPoint<'p> {
     /// One step; whether it got anywhere. Without a solution t or the motion grow
     /// without end.
     pub(super) fn step(&mut self) -> bool {
-        let residuals = &self.residuals;
-        if !(residuals.primal.abs().max(residuals.dual.abs()) < LARGEST) {
+        let Residuals { gap, primal, dual, .. } = self.residuals;
+        if !(primal.abs().max(dual.abs()) < LARGEST) {
             return false;
         }
-        let mut metrics = Vec::with_capacity(self.groups.len());
-        let mut points = self.x.clone();
-        for group in &self.groups {
-            let Some(metric) = Metric::new(group.cone, group.part(&self.x), group.part(&self.s)) else { return false };
-            match group.cone {
-                Cone::Free => points[group.first] = 0.0,
-                Cone::NonNegative | Cone::Lorentz => {
-                    metric.apply(&mut points[group.first..group.first + group.len]);
-                }
-            }
-            metrics.push(metric);
-        }
-        self.normal.factorise(&metrics);
-        let affine: Vec<f64> = points.iter().map(|p| -p).collect();
-        let predictor = self.direction(residuals, &metrics, affine, 1);
-        let (reach_x, reach_s) = self.steps(&predictor, 1.0);
-        let centring = (1.0 - reach_x.min(reach_s)).powi(3);
-        let target = self.corrected(&metrics, &points, &predictor, centring * residuals.gap / self.degree);
-        let direction = self.direction(residuals, &metrics, target, 2);
-        let (step_x, step_s) = self.steps(&direction, SHORTEN);
-        if !(step_x.min(step_s) > LEAST_STEP) {
+        let system = &mut self.system;
+        if !system.factorise() {
             return false;
         }
-        let move_along = |point: &mut [f64], direction: &[f64], step: f64| {
-            for (p, d) in point.iter_mut().zip(direction) {
-                *p += step * d;
-            }
-        };
-        move_along(&mut self.x, &direction.x, step_x);
-        move_along(&mut self.s, &direction.s, step_s);
-        move_along(&mut self.v, &direction.v, step_s);
-        self.residuals = self.residuals();
+        system.predict();
+        let [x, s] = system.reach(1.0);
+        let centring = (1.0 - x.min(s)).powi(3);
+        system.correct(centring * gap / system.degree());
+        let steps = system.reach(SHORTEN);
+        if !(steps[0].min(steps[1]) > LEAST_STEP) {
+            return false;
+        }
+        system.advance(steps);
+        self.residuals = system.compare();
         true
-    }
-
-    /// The Newton direction towards `W x + W^-1 s = target` without residuals. A
-    /// second round refines on the balance itself.
-    fn direction(&self, residuals: &Residuals, metrics: &[Metric], target: Vec<f64>, rounds: usize) -> Direction {
-        // W^-1 (target - W^-1 opening) is the change of x at a given opening.
-        let change = |opening: &[f64]| {
-            let mut change = opening.to_vec();
-            for (group, metric) in self.groups.iter().zip(metrics) {
-                let range = group.first..group.first + group.len;
-                let part = &mut change[range.clone()];
-                metric.apply_inverse(part);
-                for (value, wanted) in part.iter_mut().zip(&target[range]) {
-                    *value = wanted - *value;
-                }
-                metric.apply_inverse(part);
-            }
-            change
-        };
-        let mut s = residuals.opening.clone();
-        let mut v = vec![0.0; self.v.len()];
-        let mut x = change(&s);
-        for _ in 0..rounds {
-            let mut rhs: Vec<f64> = residuals.balance.iter().map(|b| -b).collect();
-            add_forces(self.program, &x, &mut rhs);
-            let Solution { v: correction, known } = self.normal.solve(&rhs);
-            for (v, d) in v.iter_mut().zip(&correction) {
-                *v += d;
-            }
-            // Forces are corrected, not computed anew: a stiff link turns the
-            // rounding of its motion into force.
-            let mut motion = velocities(self.program, &correction);
-            for (s, d) in s.iter_mut().zip(&motion) {
-                *s += d;
-            }
-            for (group, metric) in self.groups.iter().zip(metrics) {
-                let part = &mut motion[group.first..group.first + group.len];
-                metric.apply_inverse(part);
-                metric.apply_inverse(part);
-            }
-            for (variable, force) in known {
-                motion[variable] = force;
-            }
-            for (x, d) in x.iter_mut().zip(&motion) {
-                *x -= d;
-            }
-        }
-        for group in self.groups.iter().filter(|group| group.cone == Cone::Free) {
-            s[group.first] = 0.0;
-        }
-        Direction { x, s, v }
-    }
-
-    /// Where the corrector aims: `l \ (mu e - l o l - W dx o W^-1 ds)` at the
-    /// scaled point l.
-    fn corrected(&self, metrics: &[Metric], points: &[f64], predictor: &Direction, mu: f64) -> Vec<f64> {
-        let mut target = vec![0.0; points.len()];
-        for (group, metric) in self.groups.iter().zip(metrics) {
-            let range = group.first..group.first + group.len;
-            let (mut dx, mut ds) = ([0.0; 6], [0.0; 6]);
-            let (dx, ds) = (&mut dx[..group.len], &mut ds[..group.len]);
-            dx.copy_from_slice(&predictor.x[range.clone()]);
-            ds.copy_from_slice(&predictor.s[range.clone()]);
-            metric.apply(dx);
-            metric.apply_inverse(ds);
-            let (point, target) = (&points[range.clone()], &mut target[range]);
-            match (group.cone, group.len) {
-                // No cone, nothing to be complementary to: W dx + W^-1 ds = 0.
-                (Cone::Free, _) => {}
-                (Cone::NonNegative, _) => target[0] = (mu - dx[0] * ds[0]) / point[0] - point[0],
-                (Cone::Lorentz, 3) => target.copy_from_slice(&aim::<3>(&array(point), &array(dx), &array(ds), mu)),
-                (Cone::Lorentz, _) => target.copy_from_slice(&aim::<6>(&array(point), &array(dx), &array(ds), mu)),
-            }
-        }
-        target
-    }
-
-    /// Largest steps of x and s, at most 1, that stay in the cones, times `shorten`.
-    fn steps(&self, direction: &Direction, shorten: f64) -> (f64, f64) {
-        let longest = |point: &[f64], direction: &[f64]| {
-            self.groups.iter().fold(1.0_f64, |step, group| {
-                let range = group.first..group.first + group.len;
-                let (p, d) = (&point[range.clone()], &direction[range]);
-                match (group.cone, group.len) {
-                    (Cone::Free, _) => step,
-                    (Cone::NonNegative, _) => shortened_step::<1>(&array(p), &array(d), shorten, step),
-                    (Cone::Lorentz, 3) => shortened_step::<3>(&array(p), &array(d), shorten, step),
-                    (Cone::Lorentz, _) => shortened_step::<6>(&array(p), &array(d), shorten, step),
-                }
-            })
-        };
-        (longest(&self.x, &direction.x), longest(&self.s, &direction.s))
     }
 
     /// The iterate as it is.
     pub(super) fn iterate(&self) -> Iterate {
-        let mut z = self.x.clone();
-        let t = z.pop().expect("t is the last");
-        let mut v = self.v.clone();
+        let mut z = vec![0.0; self.program.variables];
+        self.system.forces(|first, x| z[first..first + x.len()].copy_from_slice(x));
+        let mut v = self.system.motion().as_flattened().to_vec();
+        v.extend(self.system.tie_motions());
         respect_unlimited(self.program, &mut v);
-        Iterate { v, z, t }
+        Iterate { v, z, t: self.residuals.t }
     }
 }
 

@@ -53,8 +53,22 @@ pub(super) struct Scaling<const N: usize> {
 }
 
 impl<const N: usize> Scaling<N> {
-    pub(super) fn new(x: &[f64; N], s: &[f64; N]) -> Self {
+    /// `None` when a point is not inside its cone.
+    pub(super) fn inside(x: &[f64; N], s: &[f64; N]) -> Option<Self> {
         let (dx, ds) = (determinant(x), determinant(s));
+        (x[0] > 0.0 && dx > 0.0 && s[0] > 0.0 && ds > 0.0).then(|| Self::at(x, s, dx, ds))
+    }
+
+    /// The scaling by `factor`.
+    pub(super) fn even(factor: f64) -> Self {
+        Self { eta: factor, w: std::array::from_fn(|k| if k == 0 { 1.0 } else { 0.0 }) }
+    }
+
+    pub(super) fn new(x: &[f64; N], s: &[f64; N]) -> Self {
+        Self::at(x, s, determinant(x), determinant(s))
+    }
+
+    fn at(x: &[f64; N], s: &[f64; N], dx: f64, ds: f64) -> Self {
         let (rx, rs) = (dx.sqrt(), ds.sqrt());
         let gamma = ((1.0 + dot(x, s) / (rx * rs)) / 2.0).sqrt();
         let w = std::array::from_fn(|i| {
@@ -74,21 +88,11 @@ impl<const N: usize> Scaling<N> {
         self.rotate(v, -1.0, 1.0 / self.eta)
     }
 
-    /// `W^-2 = (2 u u' - J) / eta^2` with `u = (w_0, -w_1..)`, entry by entry free
-    /// of cancellation since `w_0 >= 1`.
-    pub(super) fn inverse_square(&self) -> [[f64; N]; N] {
-        let scale = (self.eta * self.eta).recip();
-        let u: [f64; N] = std::array::from_fn(|i| if i == 0 { self.w[0] } else { -self.w[i] });
-        std::array::from_fn(|r| {
-            std::array::from_fn(|c| {
-                let unit = match (r == c, r == 0) {
-                    (false, _) => 0.0,
-                    (true, true) => -1.0,
-                    (true, false) => 1.0,
-                };
-                scale * (2.0 * u[r] * u[c] + unit)
-            })
-        })
+    /// `(scale, u)` with `W^-2 = scale (2 u u' - J)`, entry by entry free of
+    /// cancellation since `u_0 >= 1`.
+    pub(super) fn inverse_square(&self) -> (f64, [f64; N]) {
+        let u = std::array::from_fn(|i| if i == 0 { self.w[0] } else { -self.w[i] });
+        ((self.eta * self.eta).recip(), u)
     }
 
     fn rotate(&self, v: &[f64; N], sign: f64, scale: f64) -> [f64; N] {

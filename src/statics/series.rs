@@ -1,21 +1,21 @@
 //! Springs in series, as triangles: `R'R = sum B'B` one spring after another, by
 //! reflections, so that nothing is squared.
 
-use nalgebra::{Matrix6, Vector6};
+use nalgebra::{SMatrix, SVector};
 
 /// The reflections that bring `[R; B]`, R an upper triangle, to a triangle again.
-pub(super) struct Stacked {
+pub(super) struct Stacked<const D: usize> {
     /// Per column: the reflection's vector in R's row, in B's rows, and its factor.
-    head: [f64; 6],
-    tail: [Vector6<f64>; 6],
-    factor: [f64; 6],
+    head: [f64; D],
+    tail: [SVector<f64, D>; D],
+    factor: [f64; D],
 }
 
-impl Stacked {
+impl<const D: usize> Stacked<D> {
     /// Stacks `rows` under `triangle`, which becomes that of both.
-    pub(super) fn new(triangle: &mut Matrix6<f64>, mut rows: Matrix6<f64>) -> Self {
-        let mut stacked = Self { head: [0.0; 6], tail: [Vector6::zeros(); 6], factor: [0.0; 6] };
-        for k in 0..6 {
+    pub(super) fn new(triangle: &mut SMatrix<f64, D, D>, mut rows: SMatrix<f64, D, D>) -> Self {
+        let mut stacked = Self { head: [0.0; D], tail: [SVector::zeros(); D], factor: [0.0; D] };
+        for k in 0..D {
             let (pivot, below) = (triangle[(k, k)], rows.column(k).into_owned());
             let length = pivot.hypot(below.norm());
             if length == 0.0 {
@@ -26,7 +26,7 @@ impl Stacked {
             let head = pivot - turned;
             let factor = -(turned * head).recip();
             triangle[(k, k)] = turned;
-            for c in k + 1..6 {
+            for c in k + 1..D {
                 let along = (head * triangle[(k, c)] + below.dot(&rows.column(c))) * factor;
                 triangle[(k, c)] -= along * head;
                 rows.column_mut(c).axpy(-along, &below, 1.0);
@@ -37,8 +37,8 @@ impl Stacked {
     }
 
     /// The rows of the triangle in `Q' [top; bottom]`.
-    pub(super) fn reduce(&self, mut top: Vector6<f64>, mut bottom: Vector6<f64>) -> Vector6<f64> {
-        for k in 0..6 {
+    pub(super) fn reduce(&self, mut top: SVector<f64, D>, mut bottom: SVector<f64, D>) -> SVector<f64, D> {
+        for k in 0..D {
             let along = (self.head[k] * top[k] + self.tail[k].dot(&bottom)) * self.factor[k];
             top[k] -= along * self.head[k];
             bottom.axpy(-along, &self.tail[k], 1.0);
@@ -49,6 +49,8 @@ impl Stacked {
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::{Matrix6, Vector6};
+
     use super::*;
 
     fn matrix(seed: usize) -> Matrix6<f64> {

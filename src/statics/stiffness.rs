@@ -1,16 +1,16 @@
 //! Block-sparse Cholesky factors of the matrices of a body graph.
 //!
-//! The normal equations of a block's program have one 6 x 6 block per body and
-//! one per pair of bodies that a link joins, like the stiffness matrix of a frame
-//! of beams. Bodies are eliminated in order of least degree; the pattern is found
-//! once and serves every matrix on the same graph.
+//! The normal equations of a block's program have one D x D block per body, with
+//! D balances each, and one per pair of bodies that a link joins, like the
+//! stiffness matrix of a frame of beams. Bodies are eliminated in order of least
+//! degree; the pattern is found once and serves every matrix on the same graph.
 //!
 //! Knows graphs and matrices, nothing of wrenches or cones.
 
 use std::collections::BTreeSet;
 
-/// A 6 x 6 matrix, by columns.
-pub(super) type Matrix = [[f64; 6]; 6];
+/// A D x D matrix, by columns.
+pub(super) type Matrix<const D: usize> = [[f64; D]; D];
 
 /// Least pivot, as a share of the diagonal entry it came from: what is left
 /// below that is rounding.
@@ -20,7 +20,7 @@ const LEAST_PIVOT: f64 = 1e-14;
 const AT_REST: f64 = 1e100;
 
 /// A symmetric block matrix on the bodies of a graph, then its Cholesky factor.
-pub(super) struct Stiffness {
+pub(super) struct Stiffness<const D: usize> {
     /// Position of each body in the order of elimination.
     position: Vec<usize>,
     /// Per position: the later positions whose blocks are not zero, ascending.
@@ -29,10 +29,10 @@ pub(super) struct Stiffness {
     first: Vec<usize>,
     /// Per position: where the products of each pair of its `below` blocks go.
     targets: Vec<Vec<usize>>,
-    blocks: Vec<Matrix>,
+    blocks: Vec<Matrix<D>>,
 }
 
-impl Stiffness {
+impl<const D: usize> Stiffness<D> {
     /// The zero matrix for `bodies` bodies of which `pairs` are joined.
     pub(super) fn new(bodies: usize, pairs: impl Iterator<Item = (usize, usize)>) -> Self {
         let (order, later) = least_degree(bodies, pairs);
@@ -50,7 +50,7 @@ impl Stiffness {
             count += 1 + rows.len();
             below.push(rows);
         }
-        let mut matrix = Self { position, below, first, targets: Vec::new(), blocks: vec![[[0.0; 6]; 6]; count] };
+        let mut matrix = Self { position, below, first, targets: Vec::new(), blocks: vec![[[0.0; D]; D]; count] };
         matrix.targets = (0..bodies)
             .map(|k| {
                 let rows = &matrix.below[k];
@@ -64,12 +64,12 @@ impl Stiffness {
 
     /// Sets every entry to zero.
     pub(super) fn clear(&mut self) {
-        self.blocks.fill([[0.0; 6]; 6]);
+        self.blocks.fill([[0.0; D]; D]);
     }
 
     /// Adds a block at the row of body `i` and the column of body `j`; of a
     /// diagonal block, the lower triangle counts.
-    pub(super) fn add(&mut self, i: usize, j: usize, block: &Matrix) {
+    pub(super) fn add(&mut self, i: usize, j: usize, block: &Matrix<D>) {
         let (row, at) = (self.position[i], self.position[j]);
         if row >= at {
             let index = self.index(row, at);
@@ -88,6 +88,22 @@ impl Stiffness {
         }
     }
 
+    /// Whether body `i` is eliminated before body `j`.
+    pub(super) fn precedes(&self, i: usize, j: usize) -> bool {
+        self.position[i] < self.position[j]
+    }
+
+    /// Where the block at the row of body `i` and the column of body `j`, which does
+    /// not come later in the elimination, is found by [`block`](Self::block).
+    pub(super) fn slot(&self, i: usize, j: usize) -> usize {
+        self.index(self.position[i], self.position[j])
+    }
+
+    /// A block to add to; of a diagonal block, the lower triangle counts.
+    pub(super) fn block(&mut self, slot: usize) -> &mut Matrix<D> {
+        &mut self.blocks[slot]
+    }
+
     /// Number of bodies.
     pub(super) fn bodies(&self) -> usize {
         self.position.len()
@@ -95,8 +111,8 @@ impl Stiffness {
 
     /// Overwrites the matrix, which must be positive semidefinite, with its factor.
     pub(super) fn factorise(&mut self) {
-        let diagonal = |&first: &usize| -> [f64; 6] { std::array::from_fn(|k| self.blocks[first][k][k]) };
-        let least: Vec<[f64; 6]> =
+        let diagonal = |&first: &usize| -> [f64; D] { std::array::from_fn(|k| self.blocks[first][k][k]) };
+        let least: Vec<[f64; D]> =
             self.first.iter().map(diagonal).map(|d| d.map(|d| (d * LEAST_PIVOT).max(f64::MIN_POSITIVE))).collect();
         for (k, least) in least.iter().enumerate() {
             let first = self.first[k];
@@ -123,21 +139,21 @@ impl Stiffness {
     pub(super) fn forward(&self, x: &[f64]) -> Vec<f64> {
         let mut y = vec![0.0; x.len()];
         for (body, &k) in self.position.iter().enumerate() {
-            y[6 * k..6 * k + 6].copy_from_slice(&x[6 * body..6 * body + 6]);
+            y[D * k..D * k + D].copy_from_slice(&x[D * body..D * body + D]);
         }
         for k in 0..self.first.len() {
             let pivot = &self.blocks[self.first[k]];
-            let mut own: [f64; 6] = std::array::from_fn(|r| y[6 * k + r]);
-            for c in 0..6 {
+            let mut own: [f64; D] = std::array::from_fn(|r| y[D * k + r]);
+            for c in 0..D {
                 own[c] /= pivot[c][c];
-                for r in c + 1..6 {
+                for r in c + 1..D {
                     own[r] -= pivot[c][r] * own[c];
                 }
             }
-            y[6 * k..6 * k + 6].copy_from_slice(&own);
+            y[D * k..D * k + D].copy_from_slice(&own);
             for (n, &row) in self.below[k].iter().enumerate() {
                 let block = &self.blocks[self.first[k] + 1 + n];
-                let part = &mut y[6 * row..6 * row + 6];
+                let part = &mut y[D * row..D * row + D];
                 for (column, factor) in block.iter().zip(&own) {
                     for (entry, value) in part.iter_mut().zip(column) {
                         *entry -= value * factor;
@@ -151,26 +167,26 @@ impl Stiffness {
     /// `L'^-1 y` for `y` in the order of elimination; the result is by bodies.
     pub(super) fn backward(&self, mut y: Vec<f64>) -> Vec<f64> {
         for k in (0..self.first.len()).rev() {
-            let mut own: [f64; 6] = std::array::from_fn(|r| y[6 * k + r]);
+            let mut own: [f64; D] = std::array::from_fn(|r| y[D * k + r]);
             for (n, &row) in self.below[k].iter().enumerate() {
                 let block = &self.blocks[self.first[k] + 1 + n];
-                let part = &y[6 * row..6 * row + 6];
+                let part = &y[D * row..D * row + D];
                 for (column, entry) in block.iter().zip(&mut own) {
                     *entry -= column.iter().zip(part).map(|(a, b)| a * b).sum::<f64>();
                 }
             }
             let pivot = &self.blocks[self.first[k]];
-            for c in (0..6).rev() {
-                for r in c + 1..6 {
+            for c in (0..D).rev() {
+                for r in c + 1..D {
                     own[c] -= pivot[c][r] * own[r];
                 }
                 own[c] /= pivot[c][c];
             }
-            y[6 * k..6 * k + 6].copy_from_slice(&own);
+            y[D * k..D * k + D].copy_from_slice(&own);
         }
         let mut x = vec![0.0; y.len()];
         for (body, &k) in self.position.iter().enumerate() {
-            x[6 * body..6 * body + 6].copy_from_slice(&y[6 * k..6 * k + 6]);
+            x[D * body..D * body + D].copy_from_slice(&y[D * k..D * k + D]);
         }
         x
     }
@@ -210,8 +226,8 @@ fn least_degree(bodies: usize, pairs: impl Iterator<Item = (usize, usize)>) -> (
 }
 
 /// Overwrites the lower triangle with the Cholesky factor.
-fn cholesky(matrix: &mut Matrix, least: &[f64; 6]) {
-    for c in 0..6 {
+fn cholesky<const D: usize>(matrix: &mut Matrix<D>, least: &[f64; D]) {
+    for c in 0..D {
         // Less than nothing is left, all of it rounding: let this component rest (Wright 1999).
         let root = if matrix[c][c] > 0.0 { matrix[c][c].max(least[c]).sqrt() } else { AT_REST };
         matrix[c][c] = root;
@@ -219,8 +235,8 @@ fn cholesky(matrix: &mut Matrix, least: &[f64; 6]) {
             *entry /= root;
         }
         let column = matrix[c];
-        for d in c + 1..6 {
-            for r in d..6 {
+        for d in c + 1..D {
+            for r in d..D {
                 matrix[d][r] -= column[r] * column[d];
             }
         }
@@ -228,8 +244,8 @@ fn cholesky(matrix: &mut Matrix, least: &[f64; 6]) {
 }
 
 /// `block := block L'^-1`.
-fn divide(block: &mut Matrix, pivot: &Matrix) {
-    for c in 0..6 {
+fn divide<const D: usize>(block: &mut Matrix<D>, pivot: &Matrix<D>) {
+    for c in 0..D {
         for b in 0..c {
             let (factor, column) = (pivot[b][c], block[b]);
             for (entry, value) in block[c].iter_mut().zip(&column) {
@@ -244,9 +260,9 @@ fn divide(block: &mut Matrix, pivot: &Matrix) {
 }
 
 /// `target -= a b'`.
-fn subtract_product(target: &mut Matrix, a: &Matrix, b: &Matrix) {
+fn subtract_product<const D: usize>(target: &mut Matrix<D>, a: &Matrix<D>, b: &Matrix<D>) {
     for (c, column) in target.iter_mut().enumerate() {
-        for k in 0..6 {
+        for k in 0..D {
             for (entry, value) in column.iter_mut().zip(&a[k]) {
                 *entry -= value * b[k][c];
             }
@@ -262,7 +278,7 @@ mod tests {
     fn solves_a_ring_of_bodies() {
         let bodies = 7;
         let pairs: Vec<(usize, usize)> = (0..bodies).map(|i| (i, (i + 1) % bodies)).collect();
-        let mut matrix = Stiffness::new(bodies, pairs.iter().copied());
+        let mut matrix = Stiffness::<6>::new(bodies, pairs.iter().copied());
         let mut columns: Vec<[(usize, [f64; 6]); 2]> = Vec::new();
         for (n, &(i, j)) in pairs.iter().enumerate() {
             for k in 0..8 {

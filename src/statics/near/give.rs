@@ -24,7 +24,7 @@ const BALANCED: f64 = 1e-13;
 
 /// Factored stiffness of a block.
 pub(super) struct Give {
-    network: Network,
+    network: Network<6>,
     rooms: Rooms,
 }
 

@@ -1,0 +1,61 @@
+//! A block's program as columns: what each group of variables does to the balances.
+
+use super::program::{Cone, Form, Group, Program};
+
+/// A group of variables in one cone, as it acts on the balances of its link's
+/// bodies, D rows each.
+#[derive(Clone, Debug)]
+pub(super) struct Part<const D: usize> {
+    pub cone: Cone,
+    /// First variable and number of variables.
+    pub first: usize,
+    pub len: usize,
+    pub link: usize,
+    /// Per end of the link: the body, and a column per variable.
+    pub ends: [Option<(usize, [[f64; D]; 6])>; 2],
+    /// The component of the link's wrench along which each variable acts, and the
+    /// wrench per variable; `None` for points.
+    pub axes: Option<[(usize, f64); 6]>,
+    /// See [`Group`].
+    pub rest: f64,
+    pub tie_row: Option<usize>,
+    pub ties: Option<usize>,
+}
+
+/// All groups of `program`, in its order.
+pub(super) fn parts(program: &Program) -> Vec<Part<6>> {
+    program.groups.iter().map(|group| part(program, group)).collect()
+}
+
+fn part(program: &Program, group: &Group) -> Part<6> {
+    let ends = program.sides[group.link].each_ref().map(|side| {
+        let side = side.as_ref()?;
+        let map = &side.map.data.0;
+        let mut columns = [[0.0; 6]; 6];
+        match &group.form {
+            Form::Slack => return None,
+            Form::Axes(axes) => {
+                for (column, (axis, factor)) in columns[..group.len].iter_mut().zip(axes) {
+                    *column = map[*axis].map(|entry| group.scale * factor * entry);
+                }
+            }
+            Form::Point { at: [px, py], friction } => {
+                let combined = |factor: f64, axis: usize, [(b, fb), (c, fc)]: [(usize, f64); 2]| {
+                    std::array::from_fn(|r| factor * (map[axis][r] + fb * map[b][r] + fc * map[c][r]))
+                };
+                columns[0] = combined(group.scale, 2, [(3, *py), (4, -px)]);
+                if group.len == 3 {
+                    columns[1] = combined(group.scale * friction, 0, [(5, -py), (5, 0.0)]);
+                    columns[2] = combined(group.scale * friction, 1, [(5, *px), (5, 0.0)]);
+                }
+            }
+        }
+        Some((side.body, columns))
+    });
+    let axes = match &group.form {
+        Form::Axes(axes) => Some(axes.map(|(axis, factor)| (axis, factor * group.scale))),
+        Form::Point { .. } | Form::Slack => None,
+    };
+    let Group { cone, first, len, link, rest, tie_row, ties, .. } = *group;
+    Part { cone, first, len, link, ends, axes, rest, tie_row, ties }
+}

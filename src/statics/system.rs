@@ -1,0 +1,504 @@
+//! The elements of a block's program, and what holds for all of them together.
+//!
+//! ```text
+//! A x + a t = -L,    s = c + A'v,    x and s in their cones
+//! ```
+//!
+//! with D balances per body and a dense column `a` for t. The two slacks of a
+//! box component with two limits are tied by a row of their own, `p + q = t width`,
+//! that is eliminated by hand, so it costs nothing.
+//!
+//! Knows the elements, not how their matrix is factorised.
+
+use nalgebra::SMatrix;
+
+use super::element::{Element, End, Rows};
+use super::network::{Network, flexibility_root};
+use super::normal::{Normal, Solution};
+use super::parts::Part;
+use super::program::Cone;
+use super::second_order::dot;
+use super::stiffness::Matrix;
+
+/// Scaled forces, opening velocities and t at the start: about what the spanning
+/// tree carries.
+const START: f64 = 1.0;
+
+/// Imbalance of a step, as a share of the complementarity that is left, above which
+/// it is corrected: below, it would change nothing.
+const REFINE: f64 = 1e-3;
+
+/// All elements of one size.
+struct Family<const D: usize, const N: usize> {
+    elements: Vec<Element<D, N>>,
+    /// Per element its first variable.
+    first: Vec<usize>,
+    /// Per element its constant part of the stiffness; empty for single variables.
+    reflected: Vec<[Matrix<D>; 3]>,
+}
+
+impl<const D: usize, const N: usize> Default for Family<D, N> {
+    fn default() -> Self {
+        Self { elements: Vec::new(), first: Vec::new(), reflected: Vec::new() }
+    }
+}
+
+impl<const D: usize, const N: usize> Family<D, N> {
+    /// Adds an element; its index.
+    fn add(&mut self, part: &Part<D>, cost: f64) -> usize {
+        let end = |end: &Option<(usize, [Rows<D>; 6])>| {
+            end.as_ref().map(|(body, columns)| End { body: *body, columns: std::array::from_fn(|k| columns[k]) })
+        };
+        let start = if N == 6 { part.rest.max(START) } else { START };
+        self.elements.push(Element::new(part.ends.each_ref().map(end), part.cone == Cone::Free, cost, start));
+        self.first.push(part.first);
+        self.first.len() - 1
+    }
+
+    fn place(&mut self, network: &Network<D>) {
+        for element in &mut self.elements {
+            element.place(network);
+        }
+        if N > 1 {
+            self.reflected = self.elements.iter().map(Element::reflected).collect();
+        }
+    }
+
+    fn add_stiffness(&self, network: &mut Network<D>) {
+        for (index, element) in self.elements.iter().enumerate() {
+            element.add_stiffness(self.reflected.get(index), network.matrix_mut());
+        }
+    }
+
+    fn forces(&self, each: &mut impl FnMut(usize, &[f64])) {
+        for (element, first) in self.elements.iter().zip(&self.first) {
+            each(*first, &element.x);
+        }
+    }
+}
+
+/// Evaluates an expression for every element, whatever its size.
+macro_rules! each {
+    ($families:expr, $iter:ident, $element:ident => $body:expr) => {
+        for $element in $families.one.elements.$iter() {
+            $body
+        }
+        for $element in $families.two.elements.$iter() {
+            $body
+        }
+        for $element in $families.three.elements.$iter() {
+            $body
+        }
+        for $element in $families.six.elements.$iter() {
+            $body
+        }
+    };
+}
+
+/// The elements by number of variables.
+struct Families<const D: usize> {
+    one: Family<D, 1>,
+    two: Family<D, 2>,
+    three: Family<D, 3>,
+    six: Family<D, 6>,
+}
+
+/// The row that ties two single variables, its unknown motion eliminated.
+struct Tie {
+    /// Indices among the single variables; the second acts on no body.
+    pair: [usize; 2],
+    /// t's entry of the row.
+    preload: f64,
+    /// What the row lacks.
+    lacking: f64,
+    /// The row's motion, and its step.
+    motion: f64,
+    change: f64,
+    /// Sum of both weights, and the first one's share.
+    weight: f64,
+    share: f64,
+    /// Right-hand side of the step, and the first variable's step if no body moved.
+    wanted: f64,
+    resting: f64,
+}
+
+/// A link in a chain, with its elements: index of its cone of six or of a single
+/// variable, and the components of the link's wrench along which they act, with the
+/// wrench per variable.
+struct InChain {
+    link: usize,
+    six: Option<(usize, [(usize, f64); 6])>,
+    one: Vec<(usize, (usize, f64))>,
+}
+
+/// A block's program, and an iterate.
+pub(super) struct System<const D: usize> {
+    families: Families<D>,
+    t: Element<D, 1>,
+    ties: Vec<Tie>,
+    /// Per link in a chain.
+    in_chains: Vec<InChain>,
+    /// Per link: its index among `in_chains`.
+    chained: Vec<Option<usize>>,
+    /// Loads, negative.
+    wanted: Vec<Rows<D>>,
+    /// Column of t.
+    preload: Vec<Rows<D>>,
+    /// The bodies' motion, its step, and what the balances lack.
+    v: Vec<Rows<D>>,
+    dv: Vec<Rows<D>>,
+    lacking: Vec<Rows<D>>,
+    /// Number of cones.
+    degree: f64,
+    normal: Normal<D>,
+}
+
+/// What an iterate amounts to.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Residuals {
+    /// `x's`.
+    pub gap: f64,
+    /// Largest of what balances and of what openings lack.
+    pub imbalance: f64,
+    pub opening: f64,
+    /// The objective as the forces and as the motion give it, and t itself.
+    pub primal: f64,
+    pub dual: f64,
+    pub t: f64,
+}
+
+impl<const D: usize> System<D> {
+    /// The start on a program of `parts` with `loads` and the column `preload` of t by
+    /// body, and entries `tie_preload` by tie row, the links of which `network` joins.
+    /// Opening velocities are inset by `inset` over all cones.
+    pub(super) fn new(
+        parts: &[Part<D>],
+        loads: &[Rows<D>],
+        preload: Vec<Rows<D>>,
+        tie_preload: impl Fn(usize) -> f64,
+        network: Network<D>,
+        inset: f64,
+    ) -> Self {
+        let heads = parts.iter().filter(|part| part.cone != Cone::Free).count() as f64;
+        let links = parts.iter().map(|part| part.link + 1).max().unwrap_or(0);
+        let mut families = Families {
+            one: Family::default(),
+            two: Family::default(),
+            three: Family::default(),
+            six: Family::default(),
+        };
+        let mut chained = vec![None; links];
+        let mut in_chains = Vec::new();
+        for link in network.links_in_chains() {
+            chained[link] = Some(in_chains.len());
+            in_chains.push(InChain { link, six: None, one: Vec::new() });
+        }
+        let mut ties = Vec::new();
+        let mut first_slack = Vec::new();
+        for part in parts {
+            let cost = if part.cone == Cone::Free { 0.0 } else { -inset / heads };
+            let chain = chained[part.link].map(|index: usize| &mut in_chains[index]);
+            match part.len {
+                1 => {
+                    let index = families.one.add(part, cost);
+                    if let (Some(chain), Some(axes)) = (chain, &part.axes) {
+                        chain.one.push((index, axes[0]));
+                        families.one.elements[index].in_chain = true;
+                    }
+                    first_slack.resize(part.first + 1, 0);
+                    first_slack[part.first] = index;
+                    if let (Some(slack), Some(row)) = (part.ties, part.tie_row) {
+                        let one = first_slack[slack];
+                        families.one.elements[index].in_chain = families.one.elements[one].in_chain;
+                        ties.push(Tie::new([one, index], tie_preload(row)));
+                    }
+                }
+                2 => _ = families.two.add(part, cost),
+                3 => _ = families.three.add(part, cost),
+                _ => {
+                    let index = families.six.add(part, cost);
+                    if let (Some(chain), Some(axes)) = (chain, part.axes) {
+                        chain.six = Some((index, axes));
+                        families.six.elements[index].in_chain = true;
+                    }
+                }
+            }
+        }
+        families.one.place(&network);
+        families.two.place(&network);
+        families.three.place(&network);
+        families.six.place(&network);
+        let nothing = vec![[0.0; D]; loads.len()];
+        Self {
+            families,
+            t: Element::new([None, None], false, 1.0, START),
+            ties,
+            in_chains,
+            chained,
+            wanted: loads.iter().map(|load| load.map(|value| -value)).collect(),
+            preload,
+            v: nothing.clone(),
+            dv: nothing.clone(),
+            lacking: nothing,
+            degree: heads + 1.0,
+            normal: Normal::new(network),
+        }
+    }
+
+    /// Number of cones.
+    pub(super) fn degree(&self) -> f64 {
+        self.degree
+    }
+
+    /// Compares both sides of all equations.
+    pub(super) fn compare(&mut self) -> Residuals {
+        for tie in &self.ties {
+            for index in tie.pair {
+                self.families.one.elements[index].tied = tie.motion;
+            }
+        }
+        let mut forces = vec![[0.0; D]; self.v.len()];
+        let (mut gap, mut opening, mut primal) = (0.0, 0.0_f64, 0.0);
+        each!(self.families, iter_mut, element => {
+            element.compare(&self.v, &mut forces);
+            gap += element.gap();
+            primal += element.cost * element.x[0];
+            opening = element.opening.iter().fold(opening, |largest, value| largest.max(value.abs()));
+        });
+        let t = self.t.x[0];
+        let mut imbalance = 0.0_f64;
+        for (((lacking, wanted), force), preload) in
+            self.lacking.iter_mut().zip(&self.wanted).zip(&forces).zip(&self.preload)
+        {
+            for k in 0..D {
+                lacking[k] = wanted[k] - force[k] - preload[k] * t;
+                imbalance = imbalance.max(lacking[k].abs());
+            }
+        }
+        self.t.tied = work(&self.preload, &self.v);
+        for tie in &mut self.ties {
+            let [p, q] = tie.pair.map(|index| self.families.one.elements[index].x[0]);
+            tie.lacking = -(p + q + tie.preload * t);
+            imbalance = imbalance.max(tie.lacking.abs());
+            self.t.tied += tie.preload * tie.motion;
+        }
+        self.t.compare(&self.v, &mut []);
+        gap += self.t.gap();
+        opening = opening.max(self.t.opening[0].abs());
+        let dual = -work(&self.wanted, &self.v);
+        Residuals { gap, imbalance, opening, primal: primal + t, dual, t }
+    }
+
+    /// Finds the scaling of every cone and factorises there; whether it could.
+    pub(super) fn factorise(&mut self) -> bool {
+        each!(self.families, iter_mut, element => {
+            if !element.rescale() {
+                return false;
+            }
+        });
+        if !self.t.rescale() {
+            return false;
+        }
+        for tie in &mut self.ties {
+            let single = &mut self.families.one.elements;
+            let [one, other] = tie.pair.map(|index| single[index].stiffness().0);
+            tie.weight = one + other;
+            tie.share = one / tie.weight;
+            single[tie.pair[0]].left = 1.0 - tie.share;
+        }
+        let network = self.normal.network();
+        network.clear();
+        self.families.one.add_stiffness(network);
+        self.families.two.add_stiffness(network);
+        self.families.three.add_stiffness(network);
+        self.families.six.add_stiffness(network);
+        let (one, six) = (&self.families.one.elements, &self.families.six.elements);
+        network.factorise_with(|link| {
+            let chain = &self.in_chains[self.chained[link].expect("a link in a chain")];
+            match chain.six {
+                Some((index, axes)) => wrench_flexibility(&six[index], &axes),
+                None => {
+                    let mut stiffness = SMatrix::zeros();
+                    for &(index, (axis, factor)) in &chain.one {
+                        stiffness[(axis, axis)] += factor * factor * one[index].stiffness().0 * one[index].left;
+                    }
+                    flexibility_root(&stiffness)
+                }
+            }
+        });
+        let mut border = self.preload.clone();
+        let mut give = self.t.stiffness().0.recip();
+        for tie in &self.ties {
+            give += tie.preload * tie.preload / tie.weight;
+            one[tie.pair[0]].push(&[-tie.share * tie.preload], &mut border);
+        }
+        self.normal.add_border(border.as_flattened(), give);
+        true
+    }
+
+    /// The Newton direction to the boundary, as if nothing were in the way.
+    pub(super) fn predict(&mut self) {
+        let mut rows = self.unbalanced();
+        each!(self.families, iter_mut, element => element.predict(&mut rows));
+        self.t.predict(&mut []);
+        self.complete(rows, f64::INFINITY);
+    }
+
+    /// The Newton direction to complementarity `mu`, after [`predict`](Self::predict).
+    pub(super) fn correct(&mut self, mu: f64) {
+        let mut rows = self.unbalanced();
+        each!(self.families, iter_mut, element => element.correct(mu, &mut rows));
+        self.t.correct(mu, &mut []);
+        self.complete(rows, REFINE * mu);
+    }
+
+    fn unbalanced(&self) -> Vec<Rows<D>> {
+        self.lacking.iter().map(|lacking| lacking.map(|value| -value)).collect()
+    }
+
+    /// Moves the bodies so that the forces of the step, `rows` without t's, balance, once more
+    /// if more than `accuracy` is left.
+    fn complete(&mut self, mut rows: Vec<Rows<D>>, accuracy: f64) {
+        self.dv.fill([0.0; D]);
+        for tie in &mut self.ties {
+            tie.change = 0.0;
+        }
+        self.move_bodies(&rows);
+        if accuracy == f64::INFINITY {
+            return;
+        }
+        rows = self.unbalanced();
+        each!(self.families, iter, element => element.push(&element.dx, &mut rows));
+        let t = self.t.dx[0];
+        let left = rows.iter().zip(&self.preload).flat_map(|(row, preload)| {
+            row.iter().zip(preload).map(|(value, preload)| (value + preload * t).abs())
+        });
+        let left = self.ties.iter().map(|tie| self.tie_force(tie).abs()).chain(left).fold(0.0, f64::max);
+        if !(left <= accuracy) {
+            self.move_bodies(&rows);
+        }
+    }
+
+    /// What the step's forces amount to on a tie row, beyond what it lacked.
+    fn tie_force(&self, tie: &Tie) -> f64 {
+        let [p, q] = tie.pair.map(|index| self.families.one.elements[index].dx[0]);
+        p + q + tie.preload * self.t.dx[0] - tie.lacking
+    }
+
+    /// Adds the motion that the forces `rows`, without t's, give to the bodies.
+    fn move_bodies(&mut self, rows: &[Rows<D>]) {
+        let t = self.t.dx[0];
+        let mut rows: Vec<Rows<D>> = rows.iter().zip(&self.preload).map(|(row, a)| std::array::from_fn(|k| row[k] + a[k] * t)).collect();
+        let mut along = 0.0;
+        for index in 0..self.ties.len() {
+            let wanted = self.tie_force(&self.ties[index]);
+            let tie = &mut self.ties[index];
+            tie.wanted = wanted;
+            tie.resting = self.families.one.elements[tie.pair[0]].dx[0];
+            along += tie.preload * wanted / tie.weight;
+            self.families.one.elements[tie.pair[0]].push(&[-tie.share * wanted], &mut rows);
+        }
+        let Solution { v, strength, carried } = self.normal.solve(rows.as_flattened(), along);
+        let v = v.as_chunks::<D>().0;
+        let single = &mut self.families.one.elements;
+        let mut opening = work(&self.preload, v);
+        for tie in &mut self.ties {
+            let [one, other] = tie.pair;
+            single[one].tied = 0.0;
+            let left = tie.wanted - tie.preload * strength;
+            let change = left / tie.weight - tie.share * single[one].pull(v)[0];
+            opening += tie.preload * change;
+            tie.change += change;
+            (single[one].tied, single[other].tied) = (change, change);
+        }
+        each!(self.families, iter_mut, element => element.follow(v));
+        // Forces of chains and of t are known better than their motion tells.
+        self.t.ds[0] += opening;
+        self.t.dx[0] -= strength;
+        for (link, wrench) in carried {
+            let chain = &self.in_chains[self.chained[link].expect("a link in a chain")];
+            if let Some((index, axes)) = &chain.six {
+                for (dx, (axis, factor)) in self.families.six.elements[*index].dx.iter_mut().zip(axes) {
+                    *dx -= wrench[*axis] / factor;
+                }
+            }
+            for &(index, (axis, factor)) in &chain.one {
+                self.families.one.elements[index].dx[0] -= wrench[axis] / factor;
+            }
+        }
+        for tie in &self.ties {
+            let single = &mut self.families.one.elements;
+            let [one, other] = tie.pair;
+            if single[one].in_chain {
+                let left = tie.wanted - tie.preload * strength;
+                single[one].dx[0] -= tie.share * left;
+                single[other].dx[0] -= left - (tie.resting - single[one].dx[0]);
+            }
+        }
+        for (dv, v) in self.dv.iter_mut().zip(v) {
+            for (dv, v) in dv.iter_mut().zip(v) {
+                *dv += v;
+            }
+        }
+    }
+
+    /// Largest steps of x and s, at most 1, that stay in the cones, times `shorten`.
+    pub(super) fn reach(&self, shorten: f64) -> [f64; 2] {
+        let mut reach = self.t.reach(shorten, [1.0; 2]);
+        each!(self.families, iter, element => reach = element.reach(shorten, reach));
+        reach
+    }
+
+    /// Takes the shares `x` and `s` of the step.
+    pub(super) fn advance(&mut self, steps: [f64; 2]) {
+        each!(self.families, iter_mut, element => element.advance(steps));
+        self.t.advance(steps);
+        for (v, dv) in self.v.iter_mut().zip(&self.dv) {
+            for (v, dv) in v.iter_mut().zip(dv) {
+                *v += steps[1] * dv;
+            }
+        }
+        for tie in &mut self.ties {
+            tie.motion += steps[1] * tie.change;
+        }
+    }
+
+    /// The bodies' motion.
+    pub(super) fn motion(&self) -> &[Rows<D>] {
+        &self.v
+    }
+
+    /// The motions of the tie rows, in their order.
+    pub(super) fn tie_motions(&self) -> impl Iterator<Item = f64> {
+        self.ties.iter().map(|tie| tie.motion)
+    }
+
+    /// Calls `each` with every group's first variable and its forces.
+    pub(super) fn forces(&self, mut each: impl FnMut(usize, &[f64])) {
+        self.families.one.forces(&mut each);
+        self.families.two.forces(&mut each);
+        self.families.three.forces(&mut each);
+        self.families.six.forces(&mut each);
+    }
+}
+
+impl Tie {
+    fn new(pair: [usize; 2], preload: f64) -> Self {
+        Self { pair, preload, lacking: 0.0, motion: 0.0, change: 0.0, weight: 1.0, share: 0.0, wanted: 0.0, resting: 0.0 }
+    }
+}
+
+fn work<const D: usize>(rows: &[Rows<D>], v: &[Rows<D>]) -> f64 {
+    rows.iter().zip(v).map(|(row, v)| dot(row, v)).sum()
+}
+
+/// `C'^-1 W` of a cone of all six components of a wrench.
+fn wrench_flexibility<const D: usize>(element: &Element<D, 6>, axes: &[(usize, f64); 6]) -> SMatrix<f64, D, D> {
+    let mut root = SMatrix::zeros();
+    for (c, column) in element.root().iter().enumerate() {
+        for (value, (axis, factor)) in column.iter().zip(axes) {
+            root[(*axis, c)] = value / factor;
+        }
+    }
+    root
+}
