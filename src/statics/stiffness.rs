@@ -7,7 +7,8 @@
 //!
 //! Knows graphs and matrices, nothing of wrenches or cones.
 
-use std::collections::BTreeSet;
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
 
 /// A D x D matrix, by columns.
 pub(super) type Matrix<const D: usize> = [[f64; D]; D];
@@ -23,12 +24,12 @@ const AT_REST: f64 = 1e100;
 pub(super) struct Stiffness<const D: usize> {
     /// Position of each body in the order of elimination.
     position: Vec<usize>,
-    /// Per position: the later positions whose blocks are not zero, ascending.
-    below: Vec<Vec<usize>>,
-    /// Per position: index of its diagonal block; those of `below` follow.
+    /// Per position: index of its diagonal block; those below it follow. One more for the end.
     first: Vec<usize>,
-    /// Per position: where the products of each pair of its `below` blocks go.
-    targets: Vec<Vec<usize>>,
+    /// Per block its row; diagonal blocks have their own position.
+    rows: Vec<usize>,
+    /// Per position: where the products of each pair of blocks below its diagonal go.
+    targets: Vec<usize>,
     blocks: Vec<Matrix<D>>,
 }
 
@@ -40,25 +41,25 @@ impl<const D: usize> Stiffness<D> {
         for (k, &body) in order.iter().enumerate() {
             position[body] = k;
         }
-        let mut below: Vec<Vec<usize>> = Vec::with_capacity(bodies);
-        let mut first = Vec::with_capacity(bodies);
-        let mut count = 0;
-        for neighbours in &later {
-            let mut rows: Vec<usize> = neighbours.iter().map(|&body| position[body]).collect();
-            rows.sort_unstable();
-            first.push(count);
-            count += 1 + rows.len();
-            below.push(rows);
+        let mut first = Vec::with_capacity(bodies + 1);
+        let mut rows = Vec::new();
+        for (k, neighbours) in later.iter().enumerate() {
+            first.push(rows.len());
+            rows.push(k);
+            rows.extend(neighbours.iter().map(|&body| position[body]));
+            rows[first[k] + 1..].sort_unstable();
         }
-        let mut matrix = Self { position, below, first, targets: Vec::new(), blocks: vec![[[0.0; D]; D]; count] };
-        matrix.targets = (0..bodies)
-            .map(|k| {
-                let rows = &matrix.below[k];
-                let pairs =
-                    rows.iter().enumerate().flat_map(|(n, &column)| rows[n..].iter().map(move |&row| (row, column)));
-                pairs.map(|(row, column)| matrix.index(row, column)).collect()
-            })
-            .collect();
+        first.push(rows.len());
+        let blocks = vec![[[0.0; D]; D]; rows.len()];
+        let mut matrix = Self { position, first, rows, targets: Vec::new(), blocks };
+        for k in 0..bodies {
+            let below = matrix.first[k] + 1..matrix.first[k + 1];
+            for n in below.clone() {
+                for m in n..below.end {
+                    matrix.targets.push(matrix.index(matrix.rows[m], matrix.rows[n]));
+                }
+            }
+        }
         matrix
     }
 
@@ -111,24 +112,22 @@ impl<const D: usize> Stiffness<D> {
 
     /// Overwrites the matrix, which must be positive semidefinite, with its factor.
     pub(super) fn factorise(&mut self) {
-        let diagonal = |&first: &usize| -> [f64; D] { std::array::from_fn(|k| self.blocks[first][k][k]) };
-        let least: Vec<[f64; D]> =
-            self.first.iter().map(diagonal).map(|d| d.map(|d| (d * LEAST_PIVOT).max(f64::MIN_POSITIVE))).collect();
+        let diagonal = |k: usize| -> [f64; D] { std::array::from_fn(|c| self.blocks[self.first[k]][c][c]) };
+        let least: Vec<[f64; D]> = (0..self.position.len())
+            .map(|k| diagonal(k).map(|d| (d * LEAST_PIVOT).max(f64::MIN_POSITIVE)))
+            .collect();
+        let mut target = self.targets.iter();
         for (k, least) in least.iter().enumerate() {
-            let first = self.first[k];
-            let count = self.below[k].len();
-            let pivot = &mut self.blocks[first];
-            cholesky(pivot, least);
-            let pivot = *pivot;
-            let column = &mut self.blocks[first + 1..=first + count];
-            for block in column.iter_mut() {
+            let (first, end) = (self.first[k], self.first[k + 1]);
+            cholesky(&mut self.blocks[first], least);
+            let pivot = self.blocks[first];
+            for block in &mut self.blocks[first + 1..end] {
                 divide(block, &pivot);
             }
-            let mut target = self.targets[k].iter();
-            for n in 0..count {
-                let b = self.blocks[first + 1 + n];
-                for m in n..count {
-                    let a = self.blocks[first + 1 + m];
+            for n in first + 1..end {
+                let b = self.blocks[n];
+                for m in n..end {
+                    let a = self.blocks[m];
                     subtract_product(&mut self.blocks[*target.next().expect("one per pair")], &a, &b);
                 }
             }
@@ -141,18 +140,18 @@ impl<const D: usize> Stiffness<D> {
         for (body, &k) in self.position.iter().enumerate() {
             y[D * k..D * k + D].copy_from_slice(&x[D * body..D * body + D]);
         }
-        for k in 0..self.first.len() {
+        for k in 0..self.position.len() {
             let pivot = &self.blocks[self.first[k]];
             let mut own: [f64; D] = std::array::from_fn(|r| y[D * k + r]);
             for c in 0..D {
-                own[c] /= pivot[c][c];
+                own[c] *= pivot[c][c];
                 for r in c + 1..D {
                     own[r] -= pivot[c][r] * own[c];
                 }
             }
             y[D * k..D * k + D].copy_from_slice(&own);
-            for (n, &row) in self.below[k].iter().enumerate() {
-                let block = &self.blocks[self.first[k] + 1 + n];
+            for n in self.first[k] + 1..self.first[k + 1] {
+                let (block, row) = (&self.blocks[n], self.rows[n]);
                 let part = &mut y[D * row..D * row + D];
                 for (column, factor) in block.iter().zip(&own) {
                     for (entry, value) in part.iter_mut().zip(column) {
@@ -166,10 +165,10 @@ impl<const D: usize> Stiffness<D> {
 
     /// `L'^-1 y` for `y` in the order of elimination; the result is by bodies.
     pub(super) fn backward(&self, mut y: Vec<f64>) -> Vec<f64> {
-        for k in (0..self.first.len()).rev() {
+        for k in (0..self.position.len()).rev() {
             let mut own: [f64; D] = std::array::from_fn(|r| y[D * k + r]);
-            for (n, &row) in self.below[k].iter().enumerate() {
-                let block = &self.blocks[self.first[k] + 1 + n];
+            for n in self.first[k] + 1..self.first[k + 1] {
+                let (block, row) = (&self.blocks[n], self.rows[n]);
                 let part = &y[D * row..D * row + D];
                 for (column, entry) in block.iter().zip(&mut own) {
                     *entry -= column.iter().zip(part).map(|(a, b)| a * b).sum::<f64>();
@@ -180,7 +179,7 @@ impl<const D: usize> Stiffness<D> {
                 for r in c + 1..D {
                     own[c] -= pivot[c][r] * own[r];
                 }
-                own[c] /= pivot[c][c];
+                own[c] *= pivot[c][c];
             }
             y[D * k..D * k + D].copy_from_slice(&own);
         }
@@ -193,31 +192,42 @@ impl<const D: usize> Stiffness<D> {
 
     /// Index of the block at positions `(row, column)`, `row >= column`.
     fn index(&self, row: usize, column: usize) -> usize {
-        if row == column {
-            return self.first[column];
-        }
-        let place = self.below[column].binary_search(&row).expect("in the pattern");
-        self.first[column] + 1 + place
+        let (first, end) = (self.first[column], self.first[column + 1]);
+        first + self.rows[first..end].binary_search(&row).expect("in the pattern")
     }
 }
 
 /// An order of elimination, least degree first, and per step the bodies that
 /// remain and are joined to it, directly or through eliminated ones.
 fn least_degree(bodies: usize, pairs: impl Iterator<Item = (usize, usize)>) -> (Vec<usize>, Vec<Vec<usize>>) {
-    let mut neighbours = vec![BTreeSet::new(); bodies];
+    let mut neighbours: Vec<Vec<usize>> = vec![Vec::new(); bodies];
     for (i, j) in pairs.filter(|(i, j)| i != j) {
-        neighbours[i].insert(j);
-        neighbours[j].insert(i);
+        neighbours[i].push(j);
+        neighbours[j].push(i);
     }
-    let mut queue: BTreeSet<(usize, usize)> = (0..bodies).map(|i| (neighbours[i].len(), i)).collect();
+    for around in &mut neighbours {
+        around.sort_unstable();
+        around.dedup();
+    }
+    // Entries whose degree is no longer true are passed over.
+    let mut queue: BinaryHeap<Reverse<(usize, usize)>> =
+        (0..bodies).map(|i| Reverse((neighbours[i].len(), i))).collect();
     let (mut order, mut later) = (Vec::with_capacity(bodies), Vec::with_capacity(bodies));
-    while let Some((_, body)) = queue.pop_first() {
-        let around: Vec<usize> = std::mem::take(&mut neighbours[body]).into_iter().collect();
+    let mut eliminated = vec![false; bodies];
+    let mut union = Vec::new();
+    while let Some(Reverse((degree, body))) = queue.pop() {
+        if eliminated[body] || degree != neighbours[body].len() {
+            continue;
+        }
+        eliminated[body] = true;
+        let around = std::mem::take(&mut neighbours[body]);
         for &i in &around {
-            queue.remove(&(neighbours[i].len(), i));
-            neighbours[i].remove(&body);
-            neighbours[i].extend(around.iter().copied().filter(|&j| j != i));
-            queue.insert((neighbours[i].len(), i));
+            union.clear();
+            union.extend(neighbours[i].iter().chain(&around).filter(|&&j| j != i && j != body));
+            union.sort_unstable();
+            union.dedup();
+            neighbours[i].clone_from(&union);
+            queue.push(Reverse((neighbours[i].len(), i)));
         }
         order.push(body);
         later.push(around);
@@ -225,14 +235,15 @@ fn least_degree(bodies: usize, pairs: impl Iterator<Item = (usize, usize)>) -> (
     (order, later)
 }
 
-/// Overwrites the lower triangle with the Cholesky factor.
+/// Overwrites the lower triangle with the Cholesky factor, its diagonal inverted.
 fn cholesky<const D: usize>(matrix: &mut Matrix<D>, least: &[f64; D]) {
     for c in 0..D {
         // Less than nothing is left, all of it rounding: let this component rest (Wright 1999).
         let root = if matrix[c][c] > 0.0 { matrix[c][c].max(least[c]).sqrt() } else { AT_REST };
-        matrix[c][c] = root;
+        let inverse = root.recip();
+        matrix[c][c] = inverse;
         for entry in &mut matrix[c][c + 1..] {
-            *entry /= root;
+            *entry *= inverse;
         }
         let column = matrix[c];
         for d in c + 1..D {
@@ -243,7 +254,7 @@ fn cholesky<const D: usize>(matrix: &mut Matrix<D>, least: &[f64; D]) {
     }
 }
 
-/// `block := block L'^-1`.
+/// `block := block L'^-1`, with the diagonal of L inverted.
 fn divide<const D: usize>(block: &mut Matrix<D>, pivot: &Matrix<D>) {
     for c in 0..D {
         for b in 0..c {
@@ -252,9 +263,8 @@ fn divide<const D: usize>(block: &mut Matrix<D>, pivot: &Matrix<D>) {
                 *entry -= value * factor;
             }
         }
-        let inverse = 1.0 / pivot[c][c];
         for entry in &mut block[c] {
-            *entry *= inverse;
+            *entry *= pivot[c][c];
         }
     }
 }
