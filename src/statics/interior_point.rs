@@ -8,14 +8,19 @@
 //! that comes back is believed: see `bracket`.
 
 use super::conic::Iterate;
-use super::network::Network;
-use super::parts::parts;
+use super::network::{Network, has_long_chains};
+use super::parts::{Part, parts};
+use super::planar::Planar;
 use super::program::Program;
+use super::reductions::Reductions;
 use super::respect::respect_unlimited;
 use super::system::{Residuals, System};
 
 /// Largest step towards the boundary of a cone, as a share of the way.
 const SHORTEN: f64 = 0.99;
+
+/// The same for linear programs, which lose nothing close to the boundary.
+const SHORTEN_LINEAR: f64 = 0.999;
 
 /// Steps shorter than this get nowhere.
 const LEAST_STEP: f64 = 1e-4;
@@ -26,8 +31,14 @@ const LARGEST: f64 = 1e9;
 /// The method at work on a program: `x = (z, t)` and `s = c + A' v` inside their cones.
 pub(super) struct InteriorPoint<'p> {
     program: &'p Program,
-    system: System<6>,
+    system: Balances,
     residuals: Residuals,
+}
+
+/// The equations, six per body or three.
+enum Balances {
+    Space(System<6>),
+    Plane(System<3>, Planar),
 }
 
 /// How far the iteration has come.
@@ -45,14 +56,26 @@ pub(super) struct Estimate {
 impl<'p> InteriorPoint<'p> {
     /// The start on `program`, with opening velocities inset by `inset` over all
     /// cones as in [`Attempt`](super::conic::Attempt).
-    pub(super) fn new(program: &'p Program, inset: f64, in_series: bool) -> Self {
+    pub(super) fn new(program: &'p Program, inset: f64, reductions: Reductions) -> Self {
+        let bodies = program.scales.force.len();
         let parts = parts(program);
-        let bodies = 6 * program.scales.force.len();
-        let by_body = |rows: &[f64]| rows[..bodies].as_chunks::<6>().0.to_vec();
-        let network = Network::new(program, in_series);
         let tie = |row: usize| program.preload[row];
-        let mut system = System::new(&parts, &by_body(&program.load), by_body(&program.preload), tie, network, inset);
-        let residuals = system.compare();
+        let in_series = reductions.chains && has_long_chains(program);
+        let planar = if reductions.planar && !in_series { Planar::new(program, &parts) } else { None };
+        let (system, residuals) = if let Some(planar) = planar {
+            let network = Network::plain(bodies, pairs(&planar.parts));
+            let preload = planar.preload.clone();
+            let mut system = System::new(&planar.parts, &planar.loads, preload, tie, network, inset);
+            let residuals = system.compare();
+            (Balances::Plane(system, planar), residuals)
+        } else {
+            let by_body = |rows: &[f64]| rows[..6 * bodies].as_chunks::<6>().0.to_vec();
+            let network = if in_series { Network::new(program, true) } else { Network::plain(bodies, pairs(&parts)) };
+            let (loads, preload) = (by_body(&program.load), by_body(&program.preload));
+            let mut system = System::new(&parts, &loads, preload, tie, network, inset);
+            let residuals = system.compare();
+            (Balances::Space(system), residuals)
+        };
         Self { program, system, residuals }
     }
 
@@ -72,36 +95,62 @@ impl<'p> InteriorPoint<'p> {
     /// One step; whether it got anywhere. Without a solution t or the motion grow
     /// without end.
     pub(super) fn step(&mut self) -> bool {
-        let Residuals { gap, primal, dual, .. } = self.residuals;
-        if !(primal.abs().max(dual.abs()) < LARGEST) {
-            return false;
+        let stepped = match &mut self.system {
+            Balances::Space(system) => step(system, &self.residuals),
+            Balances::Plane(system, _) => step(system, &self.residuals),
+        };
+        if let Some(residuals) = stepped {
+            self.residuals = residuals;
         }
-        let system = &mut self.system;
-        if !system.factorise() {
-            return false;
-        }
-        system.predict();
-        let [x, s] = system.reach(1.0);
-        let centring = (1.0 - x.min(s)).powi(3);
-        system.correct(centring * gap / system.degree());
-        let steps = system.reach(SHORTEN);
-        if !(steps[0].min(steps[1]) > LEAST_STEP) {
-            return false;
-        }
-        system.advance(steps);
-        self.residuals = system.compare();
-        true
+        stepped.is_some()
     }
 
     /// The iterate as it is.
     pub(super) fn iterate(&self) -> Iterate {
         let mut z = vec![0.0; self.program.variables];
-        self.system.forces(|first, x| z[first..first + x.len()].copy_from_slice(x));
-        let mut v = self.system.motion().as_flattened().to_vec();
-        v.extend(self.system.tie_motions());
-        respect_unlimited(self.program, &mut v);
-        Iterate { v, z, t: self.residuals.t }
+        let mut note = |first: usize, x: &[f64]| z[first..first + x.len()].copy_from_slice(x);
+        let t = self.residuals.t;
+        let mut iterate = match &self.system {
+            Balances::Space(system) => {
+                system.forces(note);
+                let mut v = system.motion().as_flattened().to_vec();
+                v.extend(system.tie_motions());
+                Iterate { v, z, t }
+            }
+            Balances::Plane(system, planar) => {
+                system.forces(&mut note);
+                planar.in_space(&z, system.motion(), t)
+            }
+        };
+        respect_unlimited(self.program, &mut iterate.v);
+        iterate
     }
+}
+
+/// The pairs of bodies that act on each other.
+fn pairs<const D: usize>(parts: &[Part<D>]) -> impl Iterator<Item = (usize, usize)> {
+    parts.iter().filter_map(|part| match &part.ends {
+        [Some((one, _)), Some((other, _))] => Some((*one, *other)),
+        _ => None,
+    })
+}
+
+/// One step from where `system` has come to; where that is, if it got anywhere.
+fn step<const D: usize>(system: &mut System<D>, residuals: &Residuals) -> Option<Residuals> {
+    let Residuals { gap, primal, dual, .. } = *residuals;
+    if !(primal.abs().max(dual.abs()) < LARGEST) || !system.factorise() {
+        return None;
+    }
+    system.predict();
+    let [x, s] = system.reach(1.0);
+    let centring = (1.0 - x.min(s)).powi(3);
+    system.correct(centring * gap / system.degree());
+    let steps = system.reach(if system.is_linear() { SHORTEN_LINEAR } else { SHORTEN });
+    if !(steps[0].min(steps[1]) > LEAST_STEP) {
+        return None;
+    }
+    system.advance(steps);
+    Some(system.compare())
 }
 
 #[cfg(test)]
@@ -171,7 +220,7 @@ mod tests {
 
     /// Solves to `tolerance`; `None` when the method gets stuck before.
     fn solve(program: &Program, inset: f64, tolerance: f64) -> Option<Iterate> {
-        let mut method = InteriorPoint::new(program, inset, true);
+        let mut method = InteriorPoint::new(program, inset, Reductions::ALL);
         for _ in 0..40 {
             if method.estimate().error <= tolerance {
                 return Some(method.iterate());

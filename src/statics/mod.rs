@@ -41,6 +41,7 @@ mod normal;
 mod part;
 mod parts;
 mod patch;
+mod planar;
 mod program;
 mod reductions;
 mod rejoin;

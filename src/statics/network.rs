@@ -11,6 +11,7 @@
 //! Knows where links act and how stiff they are, nothing of cones.
 
 use nalgebra::{Matrix3, Matrix6, SMatrix, SVector};
+use smallvec::SmallVec;
 
 use crate::spatial::Vec3;
 
@@ -98,12 +99,7 @@ impl Network<6> {
     /// The network of `program`'s links. With `in_series`, long chains are condensed.
     pub(super) fn new(program: &Program, in_series: bool) -> Self {
         let bodies = program.scales.force.len();
-        let mut incident: Vec<Vec<usize>> = vec![Vec::new(); bodies];
-        for (link, sides) in program.sides.iter().enumerate() {
-            for side in sides.iter().flatten() {
-                incident[side.body].push(link);
-            }
-        }
+        let incident = if in_series { incident(program) } else { Vec::new() };
         let within = if in_series { within_chains(program, &incident) } else { vec![false; bodies] };
         let mut count = 0;
         let junction: Vec<Option<usize>> = within
@@ -273,7 +269,7 @@ impl<const D: usize> Network<D> {
 
     /// `a_I' M_II^-1 b_I`: the work of the loads within chains, their ends held.
     pub(super) fn work_within(&self, a: &Condensed<D>, b: &Condensed<D>) -> f64 {
-                let (mut added_a, mut added_b) = (a.added.iter(), b.added.iter());
+        let (mut added_a, mut added_b) = (a.added.iter(), b.added.iter());
         let mut work = 0.0;
         for (chain, (through_a, through_b)) in self.chains.iter().zip(a.held.iter().zip(&b.held)) {
             for ((flexibility, a), b) in chain.flexibility.iter().zip(&mut added_a).zip(&mut added_b) {
@@ -309,7 +305,7 @@ impl<const D: usize> Network<D> {
                 body.copy_from_slice(&junctions[D * k..D * k + D]);
             }
         }
-                let mut added = &loads.added[..];
+        let mut added = &loads.added[..];
         for (chain, held) in self.chains.iter().zip(&loads.held) {
             let (own, others) = added.split_at(chain.links.len());
             added = others;
@@ -340,9 +336,25 @@ impl<const D: usize> Network<D> {
     }
 }
 
+/// Whether there are chains worth condensing.
+pub(super) fn has_long_chains(program: &Program) -> bool {
+    within_chains(program, &incident(program)).contains(&true)
+}
+
+/// The links at each body.
+fn incident(program: &Program) -> Vec<SmallVec<[usize; 4]>> {
+    let mut incident = vec![SmallVec::new(); program.scales.force.len()];
+    for (link, sides) in program.sides.iter().enumerate() {
+        for side in sides.iter().flatten() {
+            incident[side.body].push(link);
+        }
+    }
+    incident
+}
+
 /// Which bodies hang between two links of a long chain each.
-fn within_chains(program: &Program, incident: &[Vec<usize>]) -> Vec<bool> {
-    let passes = |links: &Vec<usize>| {
+fn within_chains(program: &Program, incident: &[SmallVec<[usize; 4]>]) -> Vec<bool> {
+    let passes = |links: &SmallVec<[usize; 4]>| {
         links.len() == 2 && links[0] != links[1] && links.iter().all(|&link| program.in_series[link])
     };
     let mut within: Vec<bool> = incident.iter().map(passes).collect();
@@ -376,7 +388,7 @@ fn within_chains(program: &Program, incident: &[Vec<usize>]) -> Vec<bool> {
 fn walk(
     program: &Program,
     junction: &[Option<usize>],
-    incident: &[Vec<usize>],
+    incident: &[SmallVec<[usize; 4]>],
     used: &mut [bool],
     link: usize,
     start: usize,
@@ -467,7 +479,8 @@ fn inverse<const D: usize>(triangle: &SMatrix<f64, D, D>) -> SMatrix<f64, D, D> 
 pub(super) fn flexibility_root<const D: usize>(stiffness: &SMatrix<f64, D, D>) -> SMatrix<f64, D, D> {
     // Forces and torques differ in unit: scale the diagonal to 1 first.
     let unit = stiffness.diagonal().map(|d| if d > 0.0 { d.sqrt().recip() } else { 1.0 });
-    let mut factor = SMatrix::<f64, D, D>::from_fn(|r, c| if r >= c { stiffness[(r, c)] * unit[r] * unit[c] } else { 0.0 });
+    let mut factor =
+        SMatrix::<f64, D, D>::from_fn(|r, c| if r >= c { stiffness[(r, c)] * unit[r] * unit[c] } else { 0.0 });
     for c in 0..D {
         let pivot = factor[(c, c)].max(LEAST_PIVOT).sqrt();
         factor[(c, c)] = pivot;

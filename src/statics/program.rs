@@ -99,26 +99,6 @@ impl Group {
             Form::Slack => {}
         }
     }
-
-    /// The transpose of [`add_wrench`](Self::add_wrench): opening velocities of this
-    /// group in the relative twist `u` of its link.
-    pub(super) fn velocities(&self, u: &Six, opening: &mut [f64]) {
-        match &self.form {
-            Form::Axes(axes) => {
-                for (value, (axis, factor)) in opening.iter_mut().zip(axes) {
-                    *value = self.scale * factor * u[*axis];
-                }
-            }
-            Form::Point { at: [px, py], friction } => {
-                opening[0] = self.scale * (u[2] + py * u[3] - px * u[4]);
-                if let [_, x, y] = opening {
-                    *x = self.scale * friction * (u[0] - py * u[5]);
-                    *y = self.scale * friction * (u[1] + px * u[5]);
-                }
-            }
-            Form::Slack => opening.fill(0.0),
-        }
-    }
 }
 
 /// What is asked of a block.

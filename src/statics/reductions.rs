@@ -18,6 +18,9 @@ pub struct Reductions {
     pub closed_form: bool,
     /// A chain of bodies with two connections each has one unknown wrench.
     pub chains: bool,
+    /// A block that is its own mirror image in a plane, body by body, has three balances
+    /// per body.
+    pub planar: bool,
     /// Several blocks with cycles are solved at the same time. The answer is the
     /// same to the last bit, whatever the number of threads.
     pub parallel: bool,
@@ -25,11 +28,12 @@ pub struct Reductions {
 
 impl Reductions {
     /// Everything that a scene does not need is left out.
-    pub const ALL: Self = Self { rigid_links: true, blocks: true, closed_form: true, chains: true, parallel: true };
+    pub const ALL: Self =
+        Self { rigid_links: true, blocks: true, closed_form: true, chains: true, planar: true, parallel: true };
 
     /// Nothing is left out.
     pub const NONE: Self =
-        Self { rigid_links: false, blocks: false, closed_form: false, chains: false, parallel: false };
+        Self { rigid_links: false, blocks: false, closed_form: false, chains: false, planar: false, parallel: false };
 }
 
 impl Default for Reductions {

@@ -96,7 +96,7 @@ pub(super) fn assess_block(
     }
     let program = Program::new(structure, block, loads, Purpose::Utilisation);
     let problem = Problem { structure, block, loads, program: &program };
-    let mut best = Best::new(block, reductions.chains);
+    let mut best = Best::new(block, reductions);
     // Where supports face each other, begin with the attempt that bounds forces.
     let first = usize::from(faces_itself(&problem));
     let inset = ATTEMPTS[first].inset;
@@ -195,12 +195,12 @@ struct Best {
     shares: Vec<f64>,
     /// Both fields of the iterate that was enough, as they are.
     unproved: Option<(Vec<Wrench>, Vec<Twist>)>,
-    /// Whether chains are condensed on the way.
-    in_series: bool,
+    /// What may be left out on the way.
+    reductions: Reductions,
 }
 
 impl Best {
-    fn new(block: &Block, in_series: bool) -> Self {
+    fn new(block: &Block, reductions: Reductions) -> Self {
         Self {
             lower: 0.0,
             upper: f64::INFINITY,
@@ -209,7 +209,7 @@ impl Best {
             mechanism: vec![Twist::ZERO; block.bodies.len()],
             shares: vec![0.0; block.links.len()],
             unproved: None,
-            in_series,
+            reductions,
         }
     }
 
@@ -220,7 +220,7 @@ impl Best {
     /// Runs the block's own method until what it proves answers the question, or
     /// it gets no further. Says which of the two it was.
     fn iterate(&mut self, problem: &Problem<'_>, inset: f64, question: Question) -> Rung {
-        let mut method = InteriorPoint::new(problem.program, inset, self.in_series);
+        let mut method = InteriorPoint::new(problem.program, inset, self.reductions);
         let mut finest: Option<(f64, Iterate)> = None;
         let mut tried = f64::INFINITY;
         for _ in 0..ITERATIONS {
@@ -293,7 +293,7 @@ impl Best {
         if share > 0.0 && !idle.contains(&true) {
             return false;
         }
-        restore(problem, iterate, &mut field, &idle, self.in_series);
+        restore(problem, iterate, &mut field, &idle, self.reductions.chains);
         let Some((upper, demands)) = problem.upper_bound(&field, self.unit_mechanism(), 0.0) else { return false };
         if upper < self.upper {
             self.upper = upper;

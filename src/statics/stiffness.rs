@@ -113,9 +113,8 @@ impl<const D: usize> Stiffness<D> {
     /// Overwrites the matrix, which must be positive semidefinite, with its factor.
     pub(super) fn factorise(&mut self) {
         let diagonal = |k: usize| -> [f64; D] { std::array::from_fn(|c| self.blocks[self.first[k]][c][c]) };
-        let least: Vec<[f64; D]> = (0..self.position.len())
-            .map(|k| diagonal(k).map(|d| (d * LEAST_PIVOT).max(f64::MIN_POSITIVE)))
-            .collect();
+        let least: Vec<[f64; D]> =
+            (0..self.position.len()).map(|k| diagonal(k).map(|d| (d * LEAST_PIVOT).max(f64::MIN_POSITIVE))).collect();
         let mut target = self.targets.iter();
         for (k, least) in least.iter().enumerate() {
             let (first, end) = (self.first[k], self.first[k + 1]);

@@ -126,7 +126,6 @@ struct Tie {
 /// variable, and the components of the link's wrench along which they act, with the
 /// wrench per variable.
 struct InChain {
-    link: usize,
     six: Option<(usize, [(usize, f64); 6])>,
     one: Vec<(usize, (usize, f64))>,
 }
@@ -191,7 +190,7 @@ impl<const D: usize> System<D> {
         let mut in_chains = Vec::new();
         for link in network.links_in_chains() {
             chained[link] = Some(in_chains.len());
-            in_chains.push(InChain { link, six: None, one: Vec::new() });
+            in_chains.push(InChain { six: None, one: Vec::new() });
         }
         let mut ties = Vec::new();
         let mut first_slack = Vec::new();
@@ -243,6 +242,11 @@ impl<const D: usize> System<D> {
             degree: heads + 1.0,
             normal: Normal::new(network),
         }
+    }
+
+    /// Whether every cone is a half line or a wedge.
+    pub(super) fn is_linear(&self) -> bool {
+        self.families.three.elements.is_empty() && self.families.six.elements.is_empty()
     }
 
     /// Number of cones.
@@ -370,9 +374,10 @@ impl<const D: usize> System<D> {
         rows = self.unbalanced();
         each!(self.families, iter, element => element.push(&element.dx, &mut rows));
         let t = self.t.dx[0];
-        let left = rows.iter().zip(&self.preload).flat_map(|(row, preload)| {
-            row.iter().zip(preload).map(|(value, preload)| (value + preload * t).abs())
-        });
+        let left = rows
+            .iter()
+            .zip(&self.preload)
+            .flat_map(|(row, preload)| row.iter().zip(preload).map(|(value, preload)| (value + preload * t).abs()));
         let left = self.ties.iter().map(|tie| self.tie_force(tie).abs()).chain(left).fold(0.0, f64::max);
         if !(left <= accuracy) {
             self.move_bodies(&rows);
@@ -388,7 +393,8 @@ impl<const D: usize> System<D> {
     /// Adds the motion that the forces `rows`, without t's, give to the bodies.
     fn move_bodies(&mut self, rows: &[Rows<D>]) {
         let t = self.t.dx[0];
-        let mut rows: Vec<Rows<D>> = rows.iter().zip(&self.preload).map(|(row, a)| std::array::from_fn(|k| row[k] + a[k] * t)).collect();
+        let mut rows: Vec<Rows<D>> =
+            rows.iter().zip(&self.preload).map(|(row, a)| std::array::from_fn(|k| row[k] + a[k] * t)).collect();
         let mut along = 0.0;
         for index in 0..self.ties.len() {
             let wanted = self.tie_force(&self.ties[index]);
@@ -484,7 +490,17 @@ impl<const D: usize> System<D> {
 
 impl Tie {
     fn new(pair: [usize; 2], preload: f64) -> Self {
-        Self { pair, preload, lacking: 0.0, motion: 0.0, change: 0.0, weight: 1.0, share: 0.0, wanted: 0.0, resting: 0.0 }
+        Self {
+            pair,
+            preload,
+            lacking: 0.0,
+            motion: 0.0,
+            change: 0.0,
+            weight: 1.0,
+            share: 0.0,
+            wanted: 0.0,
+            resting: 0.0,
+        }
     }
 }
 
