@@ -27,6 +27,9 @@ use super::tolerances::DATA;
 /// whose mechanism violates a contact by rounding.
 const FORCE_MULTIPLE: f64 = 1e10;
 
+/// Bodies for every rigid cluster from which on looking for a mechanism is quick.
+const QUICK: usize = 4;
+
 /// Ways of asking for the mechanism, tried in turn.
 const ATTEMPTS: [Attempt; 4] = [
     Attempt { tolerance: 1e-9, inset: 1e-4, regularization: 1e-8 },
@@ -35,13 +38,23 @@ const ATTEMPTS: [Attempt; 4] = [
     Attempt { tolerance: 1e-11, inset: 0.0, regularization: 1e-9 },
 ];
 
+/// Whether looking for a mechanism costs next to nothing beside solving the block.
+pub(super) fn is_quick(structure: &Structure, block: &Block) -> bool {
+    QUICK * rigid_clusters(structure, block).count() <= block.bodies.len()
+}
+
+/// What any strength at all would let move as one.
+fn rigid_clusters(structure: &Structure, block: &Block) -> Clusters {
+    Clusters::new(structure, block, |_, link| match link {
+        Link::Connection(i) => structure.connectors[structure.connections[i].connector].model.is_rigid(),
+        Link::Contact(_) => false,
+    })
+}
+
 /// A mechanism (a twist per body of the block, at its centre of mass, in W) that
 /// proves that no strength lets the block stand; `None` when none was found.
 pub(super) fn find(structure: &Structure, block: &Block, loads: &[BodyLoad]) -> Option<Vec<Twist>> {
-    let clusters = Clusters::new(structure, block, |_, link| match link {
-        Link::Connection(i) => structure.connectors[structure.connections[i].connector].model.is_rigid(),
-        Link::Contact(_) => false,
-    });
+    let clusters = rigid_clusters(structure, block);
     let mut reduced = clusters.reduce(structure, block, loads)?;
     for connector in &mut reduced.structure.connectors {
         unbound(&mut connector.model);

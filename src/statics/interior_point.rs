@@ -7,7 +7,7 @@
 //! which answers the same question, is asked instead. As with `conic`, nothing
 //! that comes back is believed: see `bracket`.
 
-use super::conic::Iterate;
+use super::conic::{Iterate, inset_of};
 use super::normal::{Metric, Normal, Solution, add_forces, array, velocities};
 use super::program::{Cone, Form, Group, Program};
 use super::respect::respect_unlimited;
@@ -16,6 +16,10 @@ use super::second_order::{aim, dot, shortened_step};
 /// Scaled forces, opening velocities and t at the start: about what the spanning
 /// tree carries.
 const START: f64 = 1.0;
+
+/// Scaled strength from which on every cone starts where it rests: what it lacked
+/// otherwise would be many times the loads.
+const FAR: f64 = 1e3;
 
 /// Largest step towards the boundary of a cone, as a share of the way.
 const SHORTEN: f64 = 0.99;
@@ -81,7 +85,7 @@ struct Direction {
 impl<'p> InteriorPoint<'p> {
     /// The start on `program`, with opening velocities inset by `inset` over all
     /// cones as in [`Attempt`](super::conic::Attempt).
-    pub(super) fn new(program: &'p Program, inset: f64, in_series: bool) -> Self {
+    pub(super) fn new(program: &'p Program, inset: f64, start: f64, in_series: bool) -> Self {
         let normal = Normal::new(program, in_series);
         let size = program.variables + 1;
         let mut groups = program.groups.clone();
@@ -93,16 +97,17 @@ impl<'p> InteriorPoint<'p> {
             link: 0,
             form: Form::Slack,
             scale: 1.0,
-            rest: START,
+            rest: start,
             tie_row: None,
             ties: None,
         });
         let (mut cost, mut x, mut s) = (vec![0.0; size], vec![0.0; size], vec![0.0; size]);
         // No wrench anywhere, and the same complementarity in every cone.
         for group in groups.iter().filter(|group| group.cone != Cone::Free) {
-            cost[group.first] = -inset / heads;
-            x[group.first] = if group.len == 6 { group.rest.max(START) } else { START };
-            s[group.first] = START / x[group.first];
+            cost[group.first] = -inset_of(group, inset / heads);
+            let rest = if group.len == 6 || group.rest > FAR { group.rest.max(START) } else { START };
+            x[group.first] = start * rest;
+            s[group.first] = START / rest;
         }
         cost[size - 1] = 1.0;
         let wanted = program.load.iter().map(|load| -load).collect();
@@ -350,7 +355,7 @@ mod tests {
 
     /// Solves to `tolerance`; `None` when the method gets stuck before.
     fn solve(program: &Program, inset: f64, tolerance: f64) -> Option<Iterate> {
-        let mut method = InteriorPoint::new(program, inset, true);
+        let mut method = InteriorPoint::new(program, inset, 1.0, true);
         for _ in 0..40 {
             if method.estimate().error <= tolerance {
                 return Some(method.iterate());
