@@ -84,7 +84,8 @@ struct Direction {
 
 impl<'p> InteriorPoint<'p> {
     /// The start on `program`, with opening velocities inset by `inset` over all
-    /// cones as in [`Attempt`](super::conic::Attempt).
+    /// cones as in [`Attempt`](super::conic::Attempt), and forces and t at `start` times
+    /// those that are typical.
     pub(super) fn new(program: &'p Program, inset: f64, start: f64, in_series: bool) -> Self {
         let normal = Normal::new(program, in_series);
         let size = program.variables + 1;

@@ -146,3 +146,28 @@ impl Scales {
         Self { force, lever, link }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A row of bodies, each linked to the next.
+    fn row(count: usize) -> Vec<Vec<(usize, Option<usize>)>> {
+        let beside = |i: usize| {
+            let before = i.checked_sub(1).map(|j| (j, Some(j)));
+            before.into_iter().chain((i + 1 < count).then_some((i, Some(i + 1)))).collect()
+        };
+        (0..count).map(beside).collect()
+    }
+
+    #[test]
+    fn what_holds_nothing_passes_on_a_share_of_the_lighter_neighbour() {
+        let mut force = [40.0, 0.0, 0.0, 10.0, 1e-12];
+        pass_through(&mut force, 40.0, 4e-8, &row(5));
+        assert_eq!(force, [40.0, 40.0 * PASSED_ON, 10.0 * PASSED_ON, 10.0, 4e-8]);
+        // Nothing beside it holds anything either.
+        let mut force = [0.0, 0.0];
+        pass_through(&mut force, 1.0, 1e-9, &row(2));
+        assert_eq!(force, [1e-9, 1e-9]);
+    }
+}
