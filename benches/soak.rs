@@ -1,6 +1,8 @@
 //! Random structures of every kind, each answer judged three ways: by the
 //! paper's formulation in a general solver, by the independent re-check of the
-//! fields, and by the other question (value or verdict alone) to the oracle.
+//! fields, and by the other question (value or verdict alone) to the oracle. Where one
+//! of the first two finds fault, a certificate of the answer is issued and checked: only
+//! what cannot be certified counts as wrong.
 //!
 //!     cargo bench --bench soak                     # 100 000 structures
 //!     cargo bench --bench soak -- 2000 --seed 7    # fewer, others
@@ -28,6 +30,7 @@ use std::time::{Duration, Instant};
 use random::{Kind, Random, Recipe, structure};
 use rayon::prelude::*;
 use second::Opinion;
+use steadfast::certificate;
 use steadfast::statics::{Assessment, Bracket, Question, Structure, Verdict, assess};
 use tally::{Record, Tally};
 
@@ -52,6 +55,11 @@ pub struct Outcome {
     wrong: Option<String>,
     /// The fields do not prove what the answer says.
     unproved: Option<String>,
+    /// What the second method or the re-check had against the answer before a
+    /// certificate of it was issued and found right.
+    settled: Option<String>,
+    /// The second method is sure of nothing.
+    silent: bool,
     undecided: bool,
     wide: bool,
     agrees: bool,
@@ -138,19 +146,43 @@ fn examine(recipe: &Recipe) -> Outcome {
     let time = started.elapsed();
     let Bracket { lower, upper } = answer.utilisation;
     let near_one = lower >= 1.0 - CLOSE && upper <= 1.0 + CLOSE;
-    let opinion = second::opinion(&structure);
-    let wrong = contradiction(&structure, &answer).or_else(|| opinion.contradiction(&answer));
+    let opinion = second::opinion(&structure, &answer);
+    let mut wrong = contradiction(&structure, &answer);
+    let mut differs = opinion.contradiction(&answer);
+    let mut unproved = recheck::recheck(&structure, &answer).err();
+    let agrees = opinion != Opinion::None && wrong.is_none() && differs.is_none();
+    let mut settled = None;
+    if (differs.is_some() || unproved.is_some()) && is_certified(&structure, &answer) {
+        settled = differs.take().or(unproved.take());
+        unproved = None;
+    }
+    wrong = wrong.or(differs);
     Outcome {
         recipe: *recipe,
         verdict: answer.verdict,
         time,
-        agrees: opinion != Opinion::None && wrong.is_none(),
+        agrees,
         wrong,
-        unproved: recheck::recheck(&structure, &answer).err(),
+        unproved,
+        settled,
+        silent: opinion == Opinion::None,
         undecided: answer.verdict == Verdict::Undecided && !near_one,
         wide: upper.is_finite() && !(upper - lower <= WIDTH * upper.max(1.0))
             || upper.is_infinite() && lower.is_finite(),
     }
+}
+
+/// Whether a certificate of the answer can be issued that the checker, which shares no
+/// code with the solver, finds right: with the verdict and, up to what users are
+/// promised, the bracket of the answer.
+fn is_certified(structure: &Structure, answer: &Assessment) -> bool {
+    let Ok(certificate) = certificate::issue(structure, answer) else { return false };
+    let Ok(proof) = certificate::check(&certificate) else { return false };
+    let (proved, stated) = (proof.utilisation, answer.utilisation);
+    let room = |t: f64| WIDTH * t.max(1.0);
+    certificate.verdict == answer.verdict
+        && (proved.lower == stated.lower || proved.lower >= stated.lower - room(stated.lower))
+        && (proved.upper == stated.upper || proved.upper <= stated.upper + room(stated.upper))
 }
 
 /// How the answer to a yes-or-no question contradicts the answer for the value.

@@ -4,9 +4,9 @@ use steadfast::statics::{Assessment, Bracket, Structure, Verdict};
 
 use super::paper::{self, Answer};
 
-/// Tolerances that it is asked at. It is sure where all of them give one answer:
-/// one status alone is not to be believed.
-const TOLERANCES: [f64; 3] = [1e-6, 1e-8, 1e-9];
+/// Tolerances that it is asked at. Where the first does not agree with the oracle, it
+/// is sure if all of them give one answer: one status alone is not to be believed.
+const TOLERANCES: [f64; 3] = [1e-8, 1e-6, 1e-9];
 
 /// Relative distance between two of its values that still count as one.
 const SAME: f64 = 1e-4;
@@ -22,28 +22,28 @@ pub enum Opinion {
     None,
 }
 
-/// Asks the second method about `structure`.
-pub fn opinion(structure: &Structure) -> Opinion {
-    let answers = TOLERANCES.map(|tolerance| paper::solve(structure, tolerance));
-    let mut last = None;
-    for answer in answers {
-        match (answer, last) {
-            (Answer::GaveUp(_), _) => return Opinion::None,
-            (Answer::Utilisation(t), Some(Answer::Utilisation(before))) => {
+/// Asks the second method about `structure`, once if it agrees with `answer` at
+/// once, and otherwise until it is sure.
+pub fn opinion(structure: &Structure, answer: &Assessment) -> Opinion {
+    let mut sure = None;
+    for (asked, tolerance) in TOLERANCES.into_iter().enumerate() {
+        let opinion = match (paper::solve(structure, tolerance), sure) {
+            (Answer::Utilisation(t), Some(Opinion::Utilisation(before))) => {
                 if !((t - before).abs() <= SAME * t.max(1.0)) {
                     return Opinion::None;
                 }
+                Opinion::Utilisation(t)
             }
-            (_, None) | (Answer::Infeasible, Some(Answer::Infeasible)) => {}
+            (Answer::Utilisation(t), None) => Opinion::Utilisation(t),
+            (Answer::Infeasible, None | Some(Opinion::Infeasible)) => Opinion::Infeasible,
             _ => return Opinion::None,
+        };
+        if asked == 0 && opinion.contradiction(answer).is_none() {
+            return opinion;
         }
-        last = Some(answer);
+        sure = Some(opinion);
     }
-    match last {
-        Some(Answer::Utilisation(t)) => Opinion::Utilisation(t),
-        Some(Answer::Infeasible) => Opinion::Infeasible,
-        Some(Answer::GaveUp(_)) | None => Opinion::None,
-    }
+    sure.unwrap_or(Opinion::None)
 }
 
 impl Opinion {

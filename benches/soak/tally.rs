@@ -20,6 +20,8 @@ struct Counts {
     whole_body: usize,
     agree: usize,
     differ: usize,
+    settled: usize,
+    silent: usize,
     unproved: usize,
     undecided: usize,
     wide: usize,
@@ -34,6 +36,8 @@ impl Counts {
         self.whole_body += usize::from(outcome.verdict == Verdict::WholeBodyUnstable);
         self.agree += usize::from(outcome.agrees);
         self.differ += usize::from(outcome.wrong.is_some());
+        self.settled += usize::from(outcome.settled.is_some());
+        self.silent += usize::from(outcome.silent);
         self.unproved += usize::from(outcome.unproved.is_some());
         self.undecided += usize::from(outcome.undecided);
         self.wide += usize::from(outcome.wide);
@@ -47,6 +51,8 @@ impl Counts {
         self.whole_body += other.whole_body;
         self.agree += other.agree;
         self.differ += other.differ;
+        self.settled += other.settled;
+        self.silent += other.silent;
         self.unproved += other.unproved;
         self.undecided += other.undecided;
         self.wide += other.wide;
@@ -59,7 +65,6 @@ impl Counts {
         times.sort_by(f64::total_cmp);
         let at = |share: f64| times.get(((times.len() as f64 - 1.0) * share).round() as usize).copied();
         let time = |share: f64| at(share).map_or_else(String::new, |time| format!("{time:.2}"));
-        let no_opinion = self.total - self.agree - self.differ;
         let counts = [
             self.total,
             self.stable,
@@ -67,7 +72,8 @@ impl Counts {
             self.whole_body,
             self.agree,
             self.differ,
-            no_opinion,
+            self.settled,
+            self.silent,
             self.unproved,
             self.undecided,
             self.wide,
@@ -76,7 +82,7 @@ impl Counts {
     }
 }
 
-const COLUMNS: [&str; 14] = [
+const COLUMNS: [&str; 15] = [
     "kind",
     "structures",
     "stable",
@@ -84,6 +90,7 @@ const COLUMNS: [&str; 14] = [
     "whole-body unstable",
     "agree",
     "differ",
+    "settled",
     "no second opinion",
     "not proved",
     "undecided",
@@ -98,6 +105,7 @@ pub struct Tally {
     seed: u64,
     kinds: Vec<Counts>,
     faults: Vec<String>,
+    settled: Vec<String>,
     open: Vec<String>,
     wide: Vec<String>,
 }
@@ -105,7 +113,7 @@ pub struct Tally {
 impl Tally {
     pub fn new(seed: u64) -> Self {
         let kinds = Kind::ALL.iter().map(|_| Counts::default()).collect();
-        Self { seed, kinds, faults: Vec::new(), open: Vec::new(), wide: Vec::new() }
+        Self { seed, kinds, faults: Vec::new(), settled: Vec::new(), open: Vec::new(), wide: Vec::new() }
     }
 
     pub fn add(&mut self, outcome: &Outcome) {
@@ -115,6 +123,9 @@ impl Tally {
         let name = format!("--kind {kind:?} --bodies {bodies} --seed {seed}");
         for fault in [&outcome.wrong, &outcome.unproved].into_iter().flatten() {
             self.faults.push(format!("{name}: {fault}"));
+        }
+        if let Some(complaint) = &outcome.settled {
+            self.settled.push(format!("{name}: {complaint}"));
         }
         if outcome.undecided {
             self.open.push(name);
@@ -185,9 +196,11 @@ impl<'t> Record<'t> {
         let seconds = self.time.as_secs_f64();
         let mut text = format!(
             "# {} random structures\n\nSeed {}; {}; {seconds:.0} s.\n\n\
-             *differ*: the second method, the paper's formulation in a general solver asked at three tolerances, is sure of\n\
-             another answer, or the oracle's own two answers contradict each other. *not proved*: the independent re-check of\n\
-             the fields finds fault. *undecided*: though t is not proved to be within 1e-3 of 1. *too wide*: the bracket is\n\
+             *differ*: the second method, the paper's formulation in a general solver asked at up to three tolerances, is sure\n\
+             of another answer, or the oracle's own two answers contradict each other. *not proved*: the independent re-check\n\
+             of the fields finds fault. *settled*: one of these had a complaint, but a certificate of the answer, issued and\n\
+             checked in interval arithmetic, proves verdict and bracket; such are not counted as differing or not proved.\n\
+             *undecided*: though t is not proved to be within 1e-3 of 1. *too wide*: the bracket is\n\
              wider than 1e-6 of the larger of t and 1. Times are of the value, in parallel with the others.\n\n",
             self.tally.total(),
             self.tally.seed,
@@ -199,9 +212,12 @@ impl<'t> Record<'t> {
         for row in self.tally.rows() {
             text += &line(&row);
         }
-        for (title, names) in
-            [("Wrong", &self.tally.faults), ("Undecided", &self.tally.open), ("Too wide", &self.tally.wide)]
-        {
+        for (title, names) in [
+            ("Wrong", &self.tally.faults),
+            ("Settled by a certificate", &self.tally.settled),
+            ("Undecided", &self.tally.open),
+            ("Too wide", &self.tally.wide),
+        ] {
             if !names.is_empty() {
                 let _ = write!(text, "\n## {title}: {}\n\n", names.len());
                 for name in names.iter().take(NAMED) {

@@ -97,17 +97,17 @@ impl Problem<'_> {
         through
     }
 
-    /// How much each link moves in a twist field, as the power it would take up
-    /// if the force that typically flows through it acted along its motion.
-    pub(super) fn link_powers(&self, twists: &[Twist]) -> Vec<f64> {
+    /// How much each link moves in a twist field along every component in its frame, as the
+    /// power it would take up if the force that typically flows through it acted there.
+    pub(super) fn link_powers(&self, twists: &[Twist]) -> Vec<[f64; 6]> {
         let Self { structure, block, program, .. } = self;
         let scales = program.frames.iter().zip(&program.scales.link);
         scales
             .map(|(frame, force)| {
-                let relative = frame.relative_twist(structure, |body| self.twist(twists, body));
+                let Twist { linear: v, angular: w } = frame.relative_twist(structure, |body| self.twist(twists, body));
                 let levers = frame.sides().into_iter().filter_map(|(side, _)| local_body(block, side));
                 let lever = levers.map(|i| program.scales.lever[i]).fold(0.0, f64::max);
-                force * (relative.linear.norm() + relative.angular.norm() * lever)
+                [v.x, v.y, v.z, w.x * lever, w.y * lever, w.z * lever].map(|motion| force * motion.abs())
             })
             .collect()
     }

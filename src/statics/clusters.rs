@@ -13,6 +13,7 @@ use super::loads::BodyLoad;
 use super::structure::{Anchor, Body, Connection, Structure};
 
 /// Bodies of a block that move as one.
+#[derive(PartialEq, Eq)]
 pub(super) struct Clusters {
     /// Cluster of each of the block's bodies; `None` for those held by the root.
     of: Vec<Option<usize>>,
@@ -50,6 +51,11 @@ impl Clusters {
             })
             .collect();
         Self { of, count }
+    }
+
+    /// How many move.
+    pub(super) fn count(&self) -> usize {
+        self.count
     }
 
     fn cluster(&self, block: &Block, vertex: Vertex) -> Option<usize> {

@@ -17,8 +17,10 @@ use super::blocks::{Block, Link};
 use super::clusters::{Clusters, Reduced};
 use super::conic::{Attempt, solve};
 use super::connector::{Connector, Model};
+use super::interior_point::InteriorPoint;
 use super::loads::BodyLoad;
 use super::program::{Program, Purpose};
+use super::reductions::Reductions;
 use super::second_order::norm;
 use super::structure::Structure;
 use super::tolerances::DATA;
@@ -27,7 +29,23 @@ use super::tolerances::DATA;
 /// whose mechanism violates a contact by rounding.
 const FORCE_MULTIPLE: f64 = 1e10;
 
-/// Ways of asking for the mechanism, tried in turn.
+/// Bodies for every rigid cluster from which on looking for a mechanism is quick.
+const QUICK: usize = 4;
+
+/// Share of the loads that is left unheld: 1 where the block collapses and 0 where it
+/// can be held. From here on it is worth looking at the motion.
+const UNHELD: f64 = 0.5;
+
+/// Share below which the method has found that the loads are held.
+const HELD: f64 = 1e-6;
+
+/// Iterations after which the block's own method gives up.
+const ITERATIONS: usize = 40;
+
+/// Insets with which it is asked for the mechanism, tried in turn.
+const INSETS: [f64; 2] = [1e-4, 1e-8];
+
+/// Ways of asking the general solver for it where that was not enough.
 const ATTEMPTS: [Attempt; 4] = [
     Attempt { tolerance: 1e-9, inset: 1e-4, regularization: 1e-8 },
     Attempt { tolerance: 1e-10, inset: 1e-8, regularization: 1e-8 },
@@ -35,26 +53,60 @@ const ATTEMPTS: [Attempt; 4] = [
     Attempt { tolerance: 1e-11, inset: 0.0, regularization: 1e-9 },
 ];
 
+/// Whether looking for a mechanism costs next to nothing beside solving the block.
+pub(super) fn is_quick(structure: &Structure, block: &Block) -> bool {
+    QUICK * rigid_clusters(structure, block).count() <= block.bodies.len()
+}
+
+/// What any strength at all would let move as one.
+fn rigid_clusters(structure: &Structure, block: &Block) -> Clusters {
+    Clusters::new(structure, block, |_, link| match link {
+        Link::Connection(i) => structure.connectors[structure.connections[i].connector].model.is_rigid(),
+        Link::Contact(_) => false,
+    })
+}
+
 /// A mechanism (a twist per body of the block, at its centre of mass, in W) that
 /// proves that no strength lets the block stand; `None` when none was found.
 pub(super) fn find(structure: &Structure, block: &Block, loads: &[BodyLoad]) -> Option<Vec<Twist>> {
-    let clusters = Clusters::new(structure, block, |_, link| match link {
-        Link::Connection(i) => structure.connectors[structure.connections[i].connector].model.is_rigid(),
-        Link::Contact(_) => false,
-    });
+    let clusters = rigid_clusters(structure, block);
     let mut reduced = clusters.reduce(structure, block, loads)?;
     for connector in &mut reduced.structure.connectors {
         unbound(&mut connector.model);
     }
     let program = Program::new(&reduced.structure, &reduced.block, &reduced.loads, Purpose::Support);
+    let spread = |twists: Vec<Twist>| clusters.spread(structure, block, &reduced, &twists);
+    for inset in INSETS {
+        if let Some(twists) = quickly(&reduced, &program, inset) {
+            return Some(spread(twists));
+        }
+    }
     for attempt in &ATTEMPTS {
         let Some(iterate) = solve(&program, attempt) else { continue };
-        if !(iterate.t > 0.5) {
+        if !(iterate.t > UNHELD) {
             continue;
         }
         let twists = program.twists(&iterate.v);
         if proves(&reduced, &program, &twists) {
-            return Some(clusters.spread(structure, block, &reduced, &twists));
+            return Some(spread(twists));
+        }
+    }
+    None
+}
+
+/// Asks the block's own method until its motion proves that the loads are not held.
+fn quickly(reduced: &Reduced, program: &Program, inset: f64) -> Option<Vec<Twist>> {
+    let mut method = InteriorPoint::new(program, inset, 1.0, Reductions::ALL);
+    for _ in 0..ITERATIONS {
+        let estimate = method.estimate();
+        if estimate.lower > UNHELD {
+            let twists = program.twists(&method.iterate().v);
+            if proves(reduced, program, &twists) {
+                return Some(twists);
+            }
+        }
+        if estimate.upper < HELD || !method.step() {
+            break;
         }
     }
     None

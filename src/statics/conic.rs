@@ -8,7 +8,7 @@
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSettingsBuilder, DefaultSolver, IPSolver, SupportedConeT};
 
-use super::program::{Cone, Program};
+use super::program::{Cone, Group, Program};
 use super::respect::respect_unlimited;
 
 /// One way of asking the solver.
@@ -26,6 +26,15 @@ pub(super) struct Attempt {
     pub regularization: f64,
 }
 
+/// Scaled strength up to which a cone gets its full inset.
+const ORDINARY: f64 = 3.0;
+
+/// Inset of one cone: a cone whose strength is many times the loads gets less, since its
+/// strength times its inset is what that costs of the optimum.
+pub(super) fn inset_of(group: &Group, inset: f64) -> f64 {
+    inset / (group.rest / ORDINARY).max(1.0)
+}
+
 /// What the solver returned, scaled; possibly wrong, possibly a ray.
 pub(super) struct Iterate {
     /// Twists, by row of the program.
@@ -34,6 +43,27 @@ pub(super) struct Iterate {
     pub z: Vec<f64>,
     /// t over its scale.
     pub t: f64,
+}
+
+impl Iterate {
+    /// The iterate of `from` in the units of `to`, which has the same variables.
+    pub(super) fn measured(mut self, from: &Program, to: &Program) -> Self {
+        if std::ptr::eq(from, to) {
+            return self;
+        }
+        for (one, other) in from.groups.iter().zip(&to.groups) {
+            for z in &mut self.z[one.first..one.first + one.len] {
+                *z *= one.scale / other.scale;
+            }
+        }
+        // Twists are of unit power where the scaled t is 1.
+        let t = from.t_scale / to.t_scale;
+        for ((v, one), other) in self.v.iter_mut().zip(&from.row_factor).zip(&to.row_factor) {
+            *v *= one / other * t;
+        }
+        self.t *= t;
+        self
+    }
 }
 
 /// Iterations after which the solver gives up; it needs 8 to 25.
@@ -50,7 +80,7 @@ pub(super) fn solve(program: &Program, attempt: &Attempt) -> Option<Iterate> {
     let mut limits = vec![0.0; layout.height];
     for (group, &row) in program.groups.iter().zip(&layout.first_row) {
         if group.cone != Cone::Free {
-            limits[row] = -inset;
+            limits[row] = -inset_of(group, inset);
         }
     }
     limits[layout.preload_row] = 1.0;

@@ -54,12 +54,12 @@ pub(super) struct Element<const D: usize, const N: usize> {
 }
 
 impl<const D: usize, const N: usize> Element<D, N> {
-    /// An element at `ends` that carries its variable `start` and no other, with the
-    /// complementarity 1; one without a cone carries nothing.
-    pub(super) fn new(ends: [Option<End<D, N>>; 2], free: bool, cost: f64, start: f64) -> Self {
+    /// An element at `ends` whose first force and opening velocity are `start`, all others
+    /// zero; one without a cone has none.
+    pub(super) fn new(ends: [Option<End<D, N>>; 2], free: bool, cost: f64, start: [f64; 2]) -> Self {
         let (mut x, mut s) = ([0.0; N], [0.0; N]);
         if !free {
-            (x[0], s[0]) = (start, start.recip());
+            [x[0], s[0]] = start;
         }
         let zero = [0.0; N];
         let scaling = Scaling::even(FREE_WEIGHT.sqrt().recip());

@@ -55,8 +55,9 @@ pub(super) struct Estimate {
 
 impl<'p> InteriorPoint<'p> {
     /// The start on `program`, with opening velocities inset by `inset` over all
-    /// cones as in [`Attempt`](super::conic::Attempt).
-    pub(super) fn new(program: &'p Program, inset: f64, reductions: Reductions) -> Self {
+    /// cones as in [`Attempt`](super::conic::Attempt), and forces and t at `start` times
+    /// those that are typical.
+    pub(super) fn new(program: &'p Program, inset: f64, start: f64, reductions: Reductions) -> Self {
         let bodies = program.scales.force.len();
         let parts = parts(program);
         let tie = |row: usize| program.preload[row];
@@ -65,14 +66,14 @@ impl<'p> InteriorPoint<'p> {
         let (system, residuals) = if let Some(planar) = planar {
             let network = Network::plain(bodies, pairs(&planar.parts));
             let preload = planar.preload.clone();
-            let mut system = System::new(&planar.parts, &planar.loads, preload, tie, network, inset);
+            let mut system = System::new(&planar.parts, &planar.loads, preload, tie, network, inset, start);
             let residuals = system.compare();
             (Balances::Plane(system, planar), residuals)
         } else {
             let by_body = |rows: &[f64]| rows[..6 * bodies].as_chunks::<6>().0.to_vec();
             let network = if in_series { Network::new(program, true) } else { Network::plain(bodies, pairs(&parts)) };
             let (loads, preload) = (by_body(&program.load), by_body(&program.preload));
-            let mut system = System::new(&parts, &loads, preload, tie, network, inset);
+            let mut system = System::new(&parts, &loads, preload, tie, network, inset, start);
             let residuals = system.compare();
             (Balances::Space(system), residuals)
         };
@@ -220,7 +221,7 @@ mod tests {
 
     /// Solves to `tolerance`; `None` when the method gets stuck before.
     fn solve(program: &Program, inset: f64, tolerance: f64) -> Option<Iterate> {
-        let mut method = InteriorPoint::new(program, inset, Reductions::ALL);
+        let mut method = InteriorPoint::new(program, inset, 1.0, Reductions::ALL);
         for _ in 0..40 {
             if method.estimate().error <= tolerance {
                 return Some(method.iterate());

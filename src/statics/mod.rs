@@ -33,6 +33,7 @@ mod frame;
 mod hull;
 mod interior_point;
 mod loads;
+mod locked;
 mod lowered;
 mod maps;
 mod near;

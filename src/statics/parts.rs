@@ -1,6 +1,14 @@
 //! A block's program as columns: what each group of variables does to the balances.
 
+use super::conic::inset_of;
 use super::program::{Cone, Form, Group, Program};
+
+/// Scaled force at which a cone starts: about what the spanning tree carries.
+pub(super) const START: f64 = 1.0;
+
+/// Scaled strength from which on every cone starts where it rests: what it lacked
+/// otherwise would be many times the loads.
+const FAR: f64 = 1e3;
 
 /// A group of variables in one cone, as it acts on the balances of its link's
 /// bodies, D rows each.
@@ -16,8 +24,12 @@ pub(super) struct Part<const D: usize> {
     /// The component of the link's wrench along which each variable acts, and the
     /// wrench per variable; `None` for points.
     pub axes: Option<[(usize, f64); 6]>,
-    /// See [`Group`].
+    /// The first variable where the link carries nothing, see [`Group`]; where a cone starts.
     pub rest: f64,
+    pub start: f64,
+    /// Share of an even inset that a cone gets.
+    pub inset: f64,
+    /// See [`Group`].
     pub tie_row: Option<usize>,
     pub ties: Option<usize>,
 }
@@ -57,5 +69,6 @@ fn part(program: &Program, group: &Group) -> Part<6> {
         Form::Point { .. } | Form::Slack => None,
     };
     let Group { cone, first, len, link, rest, tie_row, ties, .. } = *group;
-    Part { cone, first, len, link, ends, axes, rest, tie_row, ties }
+    let start = if len == 6 || rest > FAR { rest.max(START) } else { START };
+    Part { cone, first, len, link, ends, axes, rest, start, inset: inset_of(group, 1.0), tie_row, ties }
 }

@@ -120,6 +120,8 @@ impl Planar {
                 ends,
                 axes: None,
                 rest: part.rest,
+                start: part.start,
+                inset: part.inset,
                 tie_row: part.tie_row,
                 ties,
             });

@@ -18,6 +18,45 @@ use super::structure::Structure;
 /// Smallest lever, as a fraction of the longest in the block.
 const SHORTEST: f64 = 3e-5;
 
+/// Share of the largest force below which a body holds nothing of its own.
+const NOTHING: f64 = 1e-15;
+
+/// Share of what a neighbour holds that a body which holds nothing counts as passing on:
+/// enough for the program, and little enough for the accuracy of its balance.
+const PASSED_ON: f64 = 1e-3;
+
+/// Gives every body that holds nothing of its own a share of the force of the neighbour
+/// it would pass least on for: a body without weight between two with weight carries at
+/// most as much as the lighter one. Those that hold something, or have no such neighbour, get `least`.
+fn pass_through(force: &mut [f64], largest: f64, least: f64, neighbours: &[Vec<(usize, Option<usize>)>]) {
+    let passing: Vec<usize> = (0..force.len()).filter(|&i| !(force[i] > NOTHING * largest)).collect();
+    for &i in &passing {
+        force[i] = 0.0;
+    }
+    for value in force.iter_mut().filter(|value| **value > 0.0) {
+        *value = value.max(least);
+    }
+    let mut idle = passing.clone();
+    loop {
+        let lightest = |i: &usize| {
+            let beside = neighbours[*i].iter().filter_map(|(_, other)| other.map(|j| force[j]));
+            beside.filter(|force| *force > 0.0).fold(f64::INFINITY, f64::min)
+        };
+        let found: Vec<f64> = idle.iter().map(lightest).collect();
+        for (&i, &value) in idle.iter().zip(&found).filter(|(_, value)| value.is_finite()) {
+            force[i] = value;
+        }
+        let before = idle.len();
+        idle.retain(|&i| force[i] == 0.0);
+        if idle.len() == before {
+            break;
+        }
+    }
+    for i in passing {
+        force[i] = (force[i] * PASSED_ON).max(least);
+    }
+}
+
 /// Typical sizes of a block's quantities.
 pub(super) struct Scales {
     /// Force through each of the block's bodies, in N.
@@ -30,7 +69,8 @@ pub(super) struct Scales {
 
 impl Scales {
     /// `frames` are those of the block's links. At least one load must not be zero.
-    /// No force is less than `floor` times the largest: a body without weight still needs a scale.
+    /// No force is less than `floor` times the largest, and that of a body that holds
+    /// nothing is what it may have to pass on.
     pub(super) fn new(
         structure: &Structure,
         block: &Block,
@@ -94,9 +134,7 @@ impl Scales {
             }
         }
         let largest = force.iter().copied().fold(0.0, f64::max);
-        for value in &mut force {
-            *value = value.max(floor * largest);
-        }
+        pass_through(&mut force, largest, floor * largest, &neighbours);
         let link = frames
             .iter()
             .map(|frame| {
@@ -106,5 +144,30 @@ impl Scales {
             })
             .collect();
         Self { force, lever, link }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A row of bodies, each linked to the next.
+    fn row(count: usize) -> Vec<Vec<(usize, Option<usize>)>> {
+        let beside = |i: usize| {
+            let before = i.checked_sub(1).map(|j| (j, Some(j)));
+            before.into_iter().chain((i + 1 < count).then_some((i, Some(i + 1)))).collect()
+        };
+        (0..count).map(beside).collect()
+    }
+
+    #[test]
+    fn what_holds_nothing_passes_on_a_share_of_the_lighter_neighbour() {
+        let mut force = [40.0, 0.0, 0.0, 10.0, 1e-12];
+        pass_through(&mut force, 40.0, 4e-8, &row(5));
+        assert_eq!(force, [40.0, 40.0 * PASSED_ON, 10.0 * PASSED_ON, 10.0, 4e-8]);
+        // Nothing beside it holds anything either.
+        let mut force = [0.0, 0.0];
+        pass_through(&mut force, 1.0, 1e-9, &row(2));
+        assert_eq!(force, [1e-9, 1e-9]);
     }
 }

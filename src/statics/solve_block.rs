@@ -12,6 +12,7 @@ use super::collapse;
 use super::conic::{self, Attempt, Iterate};
 use super::interior_point::InteriorPoint;
 use super::loads::BodyLoad;
+use super::locked::{AtRest, lock};
 use super::lowered::Lowered;
 use super::part::Part;
 use super::program::{Program, Purpose, local_body};
@@ -35,7 +36,7 @@ const BALANCED: f64 = 1e-6;
 
 /// Errors below which an iterate is worth proving bounds from in the end, and the
 /// growth beyond the least one after which the iteration ends.
-const USEFUL: f64 = 1e-4;
+const USEFUL: f64 = 1e-2;
 const SPOILED: f64 = 1e2;
 
 /// Ways of asking the general solver where that was not enough, tried in turn
@@ -52,13 +53,39 @@ const ATTEMPTS: [Attempt; 6] = [
     Attempt { tolerance: 1e-12, inset: 0.0, regularization: 1e-10 },
 ];
 
+/// Scaled forces at the start of the block's own method, over those that a spanning tree carries.
+const NEAR: f64 = 1.0;
+
+/// Further ways of asking the block's own method.
+#[derive(Clone, Copy, Debug)]
+struct Start {
+    /// Whether all bodies are measured by about the same force.
+    even: bool,
+    inset: Option<f64>,
+    from: f64,
+}
+
+const STARTS: [Start; 5] = [
+    Start { even: true, inset: None, from: NEAR },
+    Start { even: true, inset: Some(CLAMPED), from: NEAR },
+    Start { even: true, inset: None, from: 1e2 },
+    Start { even: false, inset: None, from: 1e2 },
+    Start { even: false, inset: Some(CLAMPED), from: 1e2 },
+];
+
 /// Inset that bounds the forces of parts that clamp themselves tightly.
 const CLAMPED: f64 = -1e-4;
 
 /// Rounds of lowering strengths that are not needed.
 const LOWERINGS: usize = 6;
 
-/// Ways of asking for a mechanism of fused clusters.
+/// Error of an iterate that more iterations hardly better.
+const CONVERGED: f64 = 1e-10;
+
+/// Inset with which a mechanism of fused clusters is asked for.
+const FUSED_INSET: f64 = 1e-8;
+
+/// Ways of asking the general solver for it.
 const FUSED_ATTEMPTS: [Attempt; 2] = [
     Attempt { tolerance: 1e-9, inset: 1e-8, regularization: 1e-8 },
     Attempt { tolerance: 1e-11, inset: 1e-9, regularization: 1e-9 },
@@ -100,42 +127,26 @@ pub(super) fn assess_block(
     // Where supports face each other, begin with the attempt that bounds forces.
     let first = usize::from(faces_itself(&problem));
     let inset = ATTEMPTS[first].inset;
-    let mut rung = best.iterate(&problem, inset, question);
-    for inset in [-inset, CLAMPED] {
-        if best.answers(question) {
-            break;
-        }
-        rung = best.iterate(&problem, inset, question);
-    }
+    let mut rung = best.iterate(&problem, &program, inset, NEAR, question);
     if best.upper.is_infinite()
-        && !best.answers(question)
+        && (!best.answers(question) || collapse::is_quick(structure, block))
         && let Some(mechanism) = collapse::find(structure, block, loads)
     {
         return Part::Collapses { mechanism, decided_by: Rung::Solved };
     }
     if !best.answers(question) {
-        best.lower_strengths(&problem, inset, question);
-    }
-    let rung = if best.answers(question) { rung } else { Rung::SolvedGenerally };
-    for attempt in ATTEMPTS[first..].iter().chain(&ATTEMPTS[..first]) {
-        if best.answers(question) {
-            break;
-        }
-        if let Some(iterate) = conic::solve(&program, attempt) {
-            best.improve(&problem, &iterate, question);
-        }
-    }
-    if best.upper.is_infinite() && !best.answers(question) {
-        // Bodies that carry next to nothing can spoil the scaling of all others.
-        let program = Program::with_floor(structure, block, loads, Purpose::Utilisation, EVEN);
-        let problem = Problem { structure, block, loads, program: &program };
-        for attempt in &ATTEMPTS[..2] {
-            if let Some(iterate) = conic::solve(&program, attempt) {
-                best.improve(&problem, &iterate, question);
-            }
+        let even = Program::with_floor(structure, block, loads, Purpose::Utilisation, EVEN);
+        for start in STARTS {
+            let inset = start.inset.unwrap_or(inset);
+            let program = if start.even { &even } else { &program };
+            rung = best.iterate(&problem, program, inset, start.from, question);
             if best.answers(question) {
                 break;
             }
+        }
+        if !best.answers(question) {
+            rung = Rung::SolvedGenerally;
+            best.ask_generally(&problem, &even, first, question);
         }
     }
     let tight = best.answers(question);
@@ -171,6 +182,25 @@ fn faces_itself(problem: &Problem<'_>) -> bool {
     normals.first().is_some_and(|first| normals.iter().any(|normal| normal.dot(first) < -OPPOSITE))
 }
 
+/// The finest iterate of the block's own method, and whether it converged.
+fn converged(program: &Program, inset: f64, reductions: Reductions) -> Option<(Iterate, bool)> {
+    let mut method = InteriorPoint::new(program, inset, NEAR, reductions);
+    let (mut least, mut finest) = (USEFUL, None);
+    for _ in 0..ITERATIONS {
+        let error = method.estimate().error;
+        if error <= least {
+            least = error;
+            finest = Some(method.iterate());
+        } else if finest.is_some() && error > SPOILED * least {
+            break;
+        }
+        if error <= CONVERGED || !method.step() {
+            break;
+        }
+    }
+    finest.map(|iterate| (iterate, least <= CONVERGED))
+}
+
 /// Nothing to hold: no force anywhere.
 fn unloaded(block: &Block) -> Part {
     Part::Stands {
@@ -195,6 +225,8 @@ struct Best {
     shares: Vec<f64>,
     /// Both fields of the iterate that was enough, as they are.
     unproved: Option<(Vec<Wrench>, Vec<Twist>)>,
+    /// What mechanisms were restricted to before.
+    restrictions: Vec<(Clusters, AtRest)>,
     /// What may be left out on the way.
     reductions: Reductions,
 }
@@ -209,6 +241,7 @@ impl Best {
             mechanism: vec![Twist::ZERO; block.bodies.len()],
             shares: vec![0.0; block.links.len()],
             unproved: None,
+            restrictions: Vec::new(),
             reductions,
         }
     }
@@ -219,49 +252,90 @@ impl Best {
 
     /// Runs the block's own method until what it proves answers the question, or
     /// it gets no further. Says which of the two it was.
-    fn iterate(&mut self, problem: &Problem<'_>, inset: f64, question: Question) -> Rung {
-        let mut method = InteriorPoint::new(problem.program, inset, self.reductions);
-        let mut finest: Option<(f64, Iterate)> = None;
+    fn iterate(
+        &mut self,
+        problem: &Problem<'_>,
+        program: &Program,
+        inset: f64,
+        start: f64,
+        question: Question,
+    ) -> Rung {
+        let mut method = InteriorPoint::new(program, inset, start, self.reductions);
+        let (mut least, mut useful) = (USEFUL, Vec::new());
         let mut tried = f64::INFINITY;
         for _ in 0..ITERATIONS {
             let estimate = method.estimate();
             match question {
                 Question::Decide(threshold) => {
                     if estimate.lower > threshold {
-                        self.keep_lower(problem, &problem.program.twists(&method.iterate().v));
+                        self.keep_lower(
+                            problem,
+                            &problem.program.twists(&method.iterate().measured(program, problem.program).v),
+                        );
                     } else if estimate.upper <= threshold && estimate.imbalance <= BALANCED {
-                        self.keep_upper(problem, &method.iterate(), 0.0);
+                        self.keep_upper(problem, &method.iterate().measured(program, problem.program), 0.0);
                     }
                 }
                 Question::ToGap(_) | Question::Full => {
                     let gap = question.gap();
                     if estimate.error <= NARROW * gap && estimate.error <= WORTHWHILE * tried {
                         tried = estimate.error;
-                        let iterate = method.iterate();
+                        let iterate = method.iterate().measured(program, problem.program);
                         self.keep_lower(problem, &problem.program.twists(&iterate.v));
                         self.keep_upper(problem, &iterate, 0.0);
                     }
                 }
             }
             if self.answers(question) {
-                let iterate = method.iterate();
+                let iterate = method.iterate().measured(program, problem.program);
                 self.unproved = Some((wrenches(problem.program, &iterate), problem.program.twists(&iterate.v)));
                 return Rung::StoppedEarly;
             }
             // What the last digits of the factorisation spoil is given back as it was.
-            if estimate.error <= USEFUL && finest.as_ref().is_none_or(|(least, _)| estimate.error < *least) {
-                finest = Some((estimate.error, method.iterate()));
-            } else if finest.as_ref().is_some_and(|(least, _)| estimate.error > SPOILED * least) {
+            if estimate.error <= least {
+                least = estimate.error;
+                useful.push(method.iterate().measured(program, problem.program));
+            } else if estimate.error > SPOILED * least && !useful.is_empty() {
                 break;
             }
             if !method.step() {
                 break;
             }
         }
-        if let Some((_, iterate)) = finest {
-            self.improve(problem, &iterate, question);
+        if let Some(finest) = useful.pop() {
+            // What lies deeper inside the cones may be put right where the finest cannot.
+            // The lower bound comes first: its mechanism is what imbalance is charged with.
+            let coarser = || std::iter::once(&finest).chain(useful.iter().rev());
+            if self.lower == 0.0 {
+                coarser().any(|iterate| self.keep_lower(problem, &problem.program.twists(&iterate.v)));
+            }
+            if self.upper.is_infinite() {
+                coarser().any(|iterate| self.keep_upper(problem, iterate, 0.0));
+            }
+            self.improve(problem, &finest, question);
         }
         Rung::Solved
+    }
+
+    /// Asks the general solver, in every way there is.
+    fn ask_generally(&mut self, problem: &Problem<'_>, even: &Program, first: usize, question: Question) {
+        self.lower_strengths(problem, ATTEMPTS[first].inset, question);
+        for attempt in ATTEMPTS[first..].iter().chain(&ATTEMPTS[..first]) {
+            if self.answers(question) {
+                return;
+            }
+            if let Some(iterate) = conic::solve(problem.program, attempt) {
+                self.improve(problem, &iterate, question);
+            }
+        }
+        for attempt in &ATTEMPTS[..2] {
+            if self.answers(question) {
+                return;
+            }
+            if let Some(iterate) = conic::solve(even, attempt) {
+                self.improve(problem, &iterate.measured(even, problem.program), question);
+            }
+        }
     }
 
     /// Bounds from an iterate, and from what its motion says about clusters.
@@ -303,6 +377,15 @@ impl Best {
         true
     }
 
+    /// Charges the upper bound with its imbalance's power in the mechanism, which is new.
+    fn charge(&mut self, problem: &Problem<'_>) {
+        if self.upper.is_finite()
+            && let Some((upper, _)) = problem.upper_bound(&self.wrenches, self.unit_mechanism(), 0.0)
+        {
+            self.upper = upper;
+        }
+    }
+
     /// Mixes a share of the mechanism so far, which is admissible, into a twist
     /// field that is not, but may be tighter.
     fn mix(&mut self, problem: &Problem<'_>, twists: &[Twist]) {
@@ -332,12 +415,13 @@ impl Best {
             }
             let program = Program::with_shares(structure, block, loads, shares.clone());
             let problem = Problem { program: &program, ..*problem };
-            self.iterate(&problem, inset, question);
+            self.iterate(&problem, &program, inset, NEAR, question);
             if self.answers(question) || !self.upper.is_finite() {
                 return;
             }
+            let moving = vec![[false; 6]; block.links.len()];
             let idle = |link: usize| shares[link] < 1.0 && self.demands[link] < shares[link] * self.upper;
-            self.move_as_one(&problem, &Clusters::new(structure, block, |link, _| idle(link)), question);
+            self.move_as_one(&problem, Clusters::new(structure, block, |link, _| idle(link)), moving, question);
             if self.answers(question) || !(lowered.raise(&shares, &self.demands, self.upper) || self.upper < 0.5 * t) {
                 return;
             }
@@ -353,38 +437,51 @@ impl Best {
         let powers = problem.link_powers(twists);
         let power: f64 = block.bodies.iter().zip(twists).map(|(&body, v)| v.power(&loads[body].wrench)).sum();
         for share in FUSED {
-            let clusters = Clusters::new(structure, block, |link, _| powers[link] <= share * power);
-            self.move_as_one(problem, &clusters, question);
+            let least = share * power;
+            let at_rest = powers.iter().map(|link| link.map(|along| along <= least)).collect();
+            let clusters = Clusters::new(structure, block, |link, _| powers[link].iter().sum::<f64>() <= least);
+            self.move_as_one(problem, clusters, at_rest, question);
             if self.answers(question) {
                 return;
             }
         }
     }
 
-    /// Keeps the best mechanism in which each of `clusters` moves as one.
-    fn move_as_one(&mut self, problem: &Problem<'_>, clusters: &Clusters, question: Question) {
+    /// Keeps the best mechanism in which each of `clusters` moves as one and what is
+    /// `at_rest` between them is held.
+    fn move_as_one(&mut self, problem: &Problem<'_>, clusters: Clusters, at_rest: AtRest, question: Question) {
+        let restriction = (clusters, at_rest);
+        if self.restrictions.contains(&restriction) {
+            return;
+        }
+        let (clusters, at_rest) = &restriction;
         let Problem { structure, block, loads, .. } = *problem;
-        let Some(reduced) = clusters.reduce(structure, block, loads) else { return };
+        let Some(mut reduced) = clusters.reduce(structure, block, loads) else { return };
+        lock(&mut reduced, at_rest);
         let program = Program::new(&reduced.structure, &reduced.block, &reduced.loads, Purpose::Utilisation);
         let inner =
             Problem { structure: &reduced.structure, block: &reduced.block, loads: &reduced.loads, program: &program };
-        for attempt in &FUSED_ATTEMPTS {
-            let Some(iterate) = conic::solve(&program, attempt) else { continue };
+        let reductions = self.reductions;
+        let own = std::iter::once_with(|| converged(&program, FUSED_INSET, reductions));
+        let generally =
+            FUSED_ATTEMPTS.iter().map(|attempt| conic::solve(&program, attempt).map(|iterate| (iterate, false)));
+        for (iterate, last) in own.chain(generally).flatten() {
             let twists = program.twists(&iterate.v);
-            if let Some((lower, inner_shares)) = inner.lower_bound(&twists)
-                && lower > self.lower
-            {
+            let Some((lower, inner_shares)) = inner.lower_bound(&twists) else { continue };
+            if lower > self.lower {
                 self.lower = lower;
                 self.mechanism = clusters.spread(structure, block, &reduced, &twists);
                 self.shares = vec![0.0; block.links.len()];
                 for (&origin, share) in reduced.origins.iter().zip(inner_shares) {
                     self.shares[origin] = share;
                 }
+                self.charge(problem);
             }
-            if self.answers(question) {
-                return;
+            if last || self.answers(question) {
+                break;
             }
         }
+        self.restrictions.push(restriction);
     }
 
     /// Keeps what `twists` prove; whether they were admissible.
@@ -394,6 +491,7 @@ impl Best {
             self.lower = lower;
             self.shares = shares;
             self.mechanism = twists.to_vec();
+            self.charge(problem);
         }
         true
     }

@@ -15,14 +15,10 @@ use nalgebra::SMatrix;
 use super::element::{Element, End, Rows};
 use super::network::{Network, flexibility_root};
 use super::normal::{Normal, Solution};
-use super::parts::Part;
+use super::parts::{Part, START};
 use super::program::Cone;
 use super::second_order::dot;
 use super::stiffness::Matrix;
-
-/// Scaled forces, opening velocities and t at the start: about what the spanning
-/// tree carries.
-const START: f64 = 1.0;
 
 /// Imbalance of a step, as a share of the complementarity that is left, above which
 /// it is corrected: below, it would change nothing.
@@ -45,12 +41,16 @@ impl<const D: usize, const N: usize> Default for Family<D, N> {
 
 impl<const D: usize, const N: usize> Family<D, N> {
     /// Adds an element; its index.
-    fn add(&mut self, part: &Part<D>, cost: f64) -> usize {
+    fn add(&mut self, part: &Part<D>, cost: f64, start: f64) -> usize {
         let end = |end: &Option<(usize, [Rows<D>; 6])>| {
             end.as_ref().map(|(body, columns)| End { body: *body, columns: std::array::from_fn(|k| columns[k]) })
         };
-        let start = if N == 6 { part.rest.max(START) } else { START };
-        self.elements.push(Element::new(part.ends.each_ref().map(end), part.cone == Cone::Free, cost, start));
+        self.elements.push(Element::new(
+            part.ends.each_ref().map(end),
+            part.cone == Cone::Free,
+            cost,
+            [start * part.start, part.start.recip()],
+        ));
         self.first.push(part.first);
         self.first.len() - 1
     }
@@ -169,7 +169,8 @@ pub(super) struct Residuals {
 impl<const D: usize> System<D> {
     /// The start on a program of `parts` with `loads` and the column `preload` of t by
     /// body, and entries `tie_preload` by tie row, the links of which `network` joins.
-    /// Opening velocities are inset by `inset` over all cones.
+    /// Opening velocities are inset by `inset` over all cones; forces and t begin at `start`
+    /// times those that are typical.
     pub(super) fn new(
         parts: &[Part<D>],
         loads: &[Rows<D>],
@@ -177,6 +178,7 @@ impl<const D: usize> System<D> {
         tie_preload: impl Fn(usize) -> f64,
         network: Network<D>,
         inset: f64,
+        start: f64,
     ) -> Self {
         let heads = parts.iter().filter(|part| part.cone != Cone::Free).count() as f64;
         let links = parts.iter().map(|part| part.link + 1).max().unwrap_or(0);
@@ -195,11 +197,11 @@ impl<const D: usize> System<D> {
         let mut ties = Vec::new();
         let mut first_slack = Vec::new();
         for part in parts {
-            let cost = if part.cone == Cone::Free { 0.0 } else { -inset / heads };
+            let cost = if part.cone == Cone::Free { 0.0 } else { -inset * part.inset / heads };
             let chain = chained[part.link].map(|index: usize| &mut in_chains[index]);
             match part.len {
                 1 => {
-                    let index = families.one.add(part, cost);
+                    let index = families.one.add(part, cost, start);
                     if let (Some(chain), Some(axes)) = (chain, &part.axes) {
                         chain.one.push((index, axes[0]));
                         families.one.elements[index].in_chain = true;
@@ -212,10 +214,10 @@ impl<const D: usize> System<D> {
                         ties.push(Tie::new([one, index], tie_preload(row)));
                     }
                 }
-                2 => _ = families.two.add(part, cost),
-                3 => _ = families.three.add(part, cost),
+                2 => _ = families.two.add(part, cost, start),
+                3 => _ = families.three.add(part, cost, start),
                 _ => {
-                    let index = families.six.add(part, cost);
+                    let index = families.six.add(part, cost, start);
                     if let (Some(chain), Some(axes)) = (chain, part.axes) {
                         chain.six = Some((index, axes));
                         families.six.elements[index].in_chain = true;
@@ -230,7 +232,7 @@ impl<const D: usize> System<D> {
         let nothing = vec![[0.0; D]; loads.len()];
         Self {
             families,
-            t: Element::new([None, None], false, 1.0, START),
+            t: Element::new([None, None], false, 1.0, [start * START, START.recip()]),
             ties,
             in_chains,
             chained,
