@@ -88,35 +88,36 @@ pub(super) struct Sum {
 pub(super) fn sums(structure: &Structure, stress: &Stress) -> Vec<Sum> {
     let nothing = || Sum { surplus: Push::ZERO, force: 0.0, torque: 0.0 };
     let mut sums: Vec<Sum> = structure.bodies.iter().map(|_| nothing()).collect();
-    let mut act = |anchor: Anchor, push: &Push, at: &Vec3| {
+    let mut act = |anchor: Anchor, push: &Push, at: &Vec3, [force, torque]: [f64; 2]| {
         if let Some(body) = movable(structure, anchor) {
             let moved = push.moved(&arm(structure, body, at));
             let sum = &mut sums[body];
             sum.surplus = sum.surplus.plus(&moved);
-            sum.force += push.force.norm().upper;
-            let lever = (at - structure.bodies[body].com).norm();
-            sum.torque += push.torque.norm().upper + lever * push.force.norm().upper;
+            sum.force += force;
+            sum.torque += torque + (at - structure.bodies[body].com).norm() * force;
         }
     };
     for (body, data) in structure.bodies.iter().enumerate() {
         let weight = Vector::exact(&structure.gravity).times(Interval::exact(data.mass));
-        act(Anchor::Body(body), &Push { force: weight, torque: Vector::ZERO }, &data.com);
+        let push = Push { force: weight, torque: Vector::ZERO };
+        act(Anchor::Body(body), &push, &data.com, push.sizes());
     }
     for load in &structure.loads {
         let push = Push { force: Vector::exact(&load.force), torque: Vector::exact(&load.torque) };
-        act(Anchor::Body(load.body), &push, &load.at.unwrap_or(structure.bodies[load.body].com));
+        let at = load.at.unwrap_or(structure.bodies[load.body].com);
+        act(Anchor::Body(load.body), &push, &at, push.sizes());
     }
     for (connection, carried) in structure.connections.iter().zip(&stress.connections) {
         let axes = Axes::of(&connection.frame.rotation);
-        let local = wrench(&structure.connectors[connection.connector].model, carried);
+        let (local, sizes) = wrench(&structure.connectors[connection.connector].model, carried);
         let push = Push { force: axes.to_world(&local.force), torque: axes.to_world(&local.torque) };
-        act(connection.child, &push, &connection.frame.translation.vector);
-        act(connection.parent, &push.negative(), &connection.frame.translation.vector);
+        act(connection.child, &push, &connection.frame.translation.vector, sizes);
+        act(connection.parent, &push.negative(), &connection.frame.translation.vector, sizes);
     }
     for (contact, force) in structure.contacts.iter().zip(&stress.contacts) {
         let push = Push { force: Vector::exact(force), torque: Vector::ZERO };
-        act(Anchor::Body(contact.body), &push, &contact.position);
-        act(contact.against, &push.negative(), &contact.position);
+        act(Anchor::Body(contact.body), &push, &contact.position, push.sizes());
+        act(contact.against, &push.negative(), &contact.position, push.sizes());
     }
     sums
 }
@@ -125,21 +126,26 @@ fn arm(structure: &Structure, body: usize, at: &Vec3) -> Vector {
     Vector::exact(at) - Vector::exact(&structure.bodies[body].com)
 }
 
-/// The wrench on the child that a connection carries, in the connection frame.
-fn wrench(model: &Model, carried: &Carried) -> Push {
-    match (carried, model) {
+/// The wrench on the child that a connection carries, in the connection frame, and the
+/// sizes of the forces and torques that it is the sum of.
+fn wrench(model: &Model, carried: &Carried) -> (Push, [f64; 2]) {
+    let parts = match (carried, model) {
         (Carried::Wrench(wrench), _) => {
-            Push { force: Vector::exact(&wrench.force), torque: Vector::exact(&wrench.torque) }
+            vec![Push { force: Vector::exact(&wrench.force), torque: Vector::exact(&wrench.torque) }]
         }
         (Carried::Points { preload, forces }, Model::Patch { points, .. }) => {
             let preload = Vector { z: Interval::exact(-preload), ..Vector::ZERO };
-            forces.iter().zip(points).fold(Push { force: preload, torque: Vector::ZERO }, |sum, (force, point)| {
-                let at = Vector { x: Interval::exact(point[0]), y: Interval::exact(point[1]), z: Interval::ZERO };
-                sum.plus(&Push { force: Vector::exact(force), torque: Vector::ZERO }.moved(&at))
-            })
+            let at = |p: &[f64; 2]| Vector { x: Interval::exact(p[0]), y: Interval::exact(p[1]), z: Interval::ZERO };
+            let forces = forces.iter().map(|force| Push { force: Vector::exact(force), torque: Vector::ZERO });
+            let forces = forces.zip(points).map(|(push, point)| push.moved(&at(point)));
+            std::iter::once(Push { force: preload, torque: Vector::ZERO }).chain(forces).collect()
         }
-        (Carried::Points { .. }, Model::Cone { .. } | Model::Box { .. }) => Push::ZERO,
-    }
+        (Carried::Points { .. }, Model::Cone { .. } | Model::Box { .. }) => Vec::new(),
+    };
+    parts.iter().fold((Push::ZERO, [0.0; 2]), |(sum, [force, torque]), part| {
+        let sizes = part.sizes();
+        (sum.plus(part), [force + sizes[0], torque + sizes[1]])
+    })
 }
 
 /// By how much a contact force leaves its friction cone, in N; not above 0 inside.
@@ -234,7 +240,11 @@ pub(super) fn forest(structure: &Structure) -> Vec<Branch> {
     }
     let mut branches = Vec::with_capacity(structure.bodies.len());
     let mut reached = vec![false; structure.bodies.len() + 1];
-    for root in std::iter::once(ground).chain(0..structure.bodies.len()) {
+    // Where the ground is not reached the heaviest body is the root: what rounding leaves
+    // on it need not be carried by what carries less.
+    let mut roots: Vec<usize> = (0..structure.bodies.len()).collect();
+    roots.sort_by(|a, b| structure.bodies[*b].mass.total_cmp(&structure.bodies[*a].mass));
+    for root in std::iter::once(ground).chain(roots) {
         if reached[root] || (root != ground && structure.bodies[root].fixed) {
             continue;
         }

@@ -26,6 +26,11 @@ impl Push {
         Self { force: self.force + other.force, torque: self.torque + other.torque }
     }
 
+    /// At most how large its force and its torque are, in N and N m.
+    pub(super) fn sizes(&self) -> [f64; 2] {
+        [self.force.norm().upper, self.torque.norm().upper]
+    }
+
     pub(super) fn negative(&self) -> Self {
         Self { force: -self.force, torque: -self.torque }
     }
@@ -180,7 +185,7 @@ pub(super) fn holding(connector: &Connector) -> Option<f64> {
 
 /// Limits of the six components of a wrench, each for its negative and its positive
 /// values; none at all for a connector that is no box.
-fn limits(model: &Model) -> [[f64; 2]; 6] {
+pub(super) fn limits(model: &Model) -> [[f64; 2]; 6] {
     match model {
         Model::Box { shear, tension, compression, bending, torsion } => {
             let both = |limit: f64| [limit, limit];
