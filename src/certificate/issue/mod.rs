@@ -21,19 +21,30 @@ use super::{Certificate, Mechanism, Stress, balance, motion};
 /// Why an answer could not be certified.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Uncertified {
-    /// What the checker found wrong with the best attempt.
+    /// What the checker found wrong with what is nearest to the answer.
     pub faults: Vec<Fault>,
+    /// How many times as large as the loads the answer's forces are: by as much more
+    /// than that of the loads does their rounding count.
+    pub forces: f64,
 }
 
 impl fmt::Display for Uncertified {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str("no certificate: ")?;
         match self.faults.first() {
-            Some(fault) => write!(f, "{fault}"),
-            None => f.write_str("nothing is proved"),
+            Some(fault) => write!(f, "{fault}")?,
+            None => f.write_str("nothing is proved")?,
         }
+        f.write_str("; the answer's fields are exact up to rounding only, and to prove it from them takes more")?;
+        if self.forces > LARGE {
+            write!(f, " (its largest force is {:.0e} times the loads)", self.forces)?;
+        }
+        Ok(())
     }
 }
+
+/// Forces, relative to the loads, from which on their rounding is worth a word.
+const LARGE: f64 = 1e3;
 
 impl std::error::Error for Uncertified {}
 
@@ -50,14 +61,15 @@ const WIDER: f64 = 1e-5;
 /// The fields do not prove the answer; with what is wrong with them.
 pub fn issue(structure: &Structure, answer: &Assessment) -> Result<Certificate, Uncertified> {
     let wanted = answer.utilisation;
+    let refused = |faults| Uncertified { faults, forces: largest_force(structure, answer) };
     let (mut lower, mut mechanism) = (0.0, None);
     if wanted.lower > 0.0 {
-        let (proved, found) = best_mechanism(structure, answer).map_err(|faults| Uncertified { faults })?;
+        let (proved, found) = best_mechanism(structure, answer).map_err(refused)?;
         (lower, mechanism) = (proved, Some(found));
     }
     let (mut upper, mut stress) = (f64::INFINITY, None);
     if wanted.upper < f64::INFINITY {
-        let (proved, found) = best_stress(structure, answer).map_err(|faults| Uncertified { faults })?;
+        let (proved, found) = best_stress(structure, answer).map_err(refused)?;
         (upper, stress) = (proved, Some(found));
     }
     // Never more than the oracle says: proofs for data that are meant up to 1e-12 may cross.
@@ -72,13 +84,21 @@ pub fn issue(structure: &Structure, answer: &Assessment) -> Result<Certificate, 
             "rounding of its forces and velocities widens [{from}, {to}] to [{}, {}]",
             utilisation.lower, utilisation.upper
         );
-        return Err(Uncertified { faults: vec![Fault::Claim(problem)] });
+        return Err(refused(vec![Fault::Claim(problem)]));
     };
     let certificate = Certificate { structure: structure.clone(), verdict, utilisation, stress, mechanism };
     match check(&certificate) {
         Ok(_) => Ok(certificate),
-        Err(faults) => Err(Uncertified { faults }),
+        Err(faults) => Err(refused(faults)),
     }
+}
+
+/// The largest force of an answer over the sum of all loads.
+fn largest_force(structure: &Structure, answer: &Assessment) -> f64 {
+    let forces = answer.connections.iter().map(|state| state.wrench.force.norm().max(state.strength));
+    let largest = forces.chain(answer.contacts.iter().map(|force| force.norm())).fold(0.0, f64::max);
+    let weights = structure.bodies.iter().map(|body| body.mass * structure.gravity.norm());
+    largest / weights.chain(structure.loads.iter().map(|load| load.force.norm())).sum::<f64>()
 }
 
 /// The prepared stress that proves the least upper bound.

@@ -59,9 +59,12 @@ fn balanced(structure: &Structure, answer: &Assessment, way: Way) -> Option<Stre
             return Some(stress);
         }
         let sums = sums(structure, &stress);
+        let most = sums.iter().map(|sum| sum.force).fold(0.0, f64::max);
         for (connection, room) in structure.connections.iter().zip(&mut spares) {
             let ends = [connection.parent, connection.child].into_iter().filter_map(|end| movable(structure, end));
-            *room = way.spare * ends.map(|body| sums[body].force).fold(0.0, f64::max);
+            let around = ends.map(|body| sums[body].force).fold(0.0, f64::max);
+            // What carries nothing may still have to carry the rounding of others.
+            *room = way.spare * if around > 0.0 { around } else { most };
         }
         let (rest, left) = carry(structure, &forest, &sums);
         for (wrench, rest) in wrenches.iter_mut().zip(rest) {
