@@ -14,8 +14,8 @@ use std::fmt;
 
 use crate::statics::{Assessment, Bracket, Structure};
 
+use super::allowance::Allowance;
 use super::check::{Fault, check, follows};
-use super::models::Allowance;
 use super::{Certificate, Mechanism, Stress, balance, motion};
 
 /// Why an answer could not be certified.

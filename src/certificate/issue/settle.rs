@@ -10,7 +10,8 @@ use nalgebra::{DMatrix, Vector6};
 use crate::spatial::{Vec3, Wrench};
 use crate::statics::{Anchor, Connection, Structure};
 
-use super::super::balance::{Branch, movable};
+use super::super::balance::movable;
+use super::super::forest::Branch;
 use super::super::models::{Push, limits};
 
 /// Most iterations of a singular value decomposition of six rows; it needs about ten.
@@ -102,7 +103,7 @@ fn changes(lacking: &Wrench, held: &[&Hold], floor: f64) -> Option<Vec<f64>> {
     let amounts: Vec<f64> = held.iter().zip(&effects).map(|(hold, e)| hold.amount * e.norm()).collect();
     let most = amounts.iter().copied().fold(0.0, f64::max);
     let wanted = -scaled(lacking);
-    if !(most > 0.0 && most < f64::INFINITY) || !wanted.iter().all(|x| x.is_finite()) {
+    if !(most > 0.0 && most < f64::INFINITY && wanted.iter().all(|x| x.is_finite())) {
         return None;
     }
     let weights: Vec<f64> = amounts

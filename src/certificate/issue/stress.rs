@@ -3,7 +3,8 @@
 use crate::spatial::{Vec3, Wrench};
 use crate::statics::{Anchor, Assessment, Model, Structure, face_forces};
 
-use super::super::balance::{carry, forest, movable, sums};
+use super::super::balance::{movable, sums};
+use super::super::forest::{carry, forest};
 use super::super::{Carried, Stress};
 use super::settle::{Forces, settle};
 
