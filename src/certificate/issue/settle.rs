@@ -12,6 +12,7 @@ use crate::statics::{Anchor, Connection, Structure};
 
 use super::super::balance::movable;
 use super::super::forest::Branch;
+use super::super::interval::{Interval, Vector};
 use super::super::models::{Push, limits};
 
 /// Most iterations of a singular value decomposition of six rows; it needs about ten.
@@ -41,8 +42,7 @@ pub(super) fn settle(
         return;
     }
     let parts = Parts::new(structure, forest, left, forces);
-    let mut lacking: Vec<Wrench> =
-        left.iter().map(|(_, push)| Wrench::new(push.force.middle(), push.torque.middle())).collect();
+    let mut lacking: Vec<Wrench> = left.iter().map(|(_, push)| middle(push)).collect();
     let mut done = vec![false; left.len()];
     for part in parts.farthest_first() {
         let held = parts.around[part].iter().filter(|hold| hold.other.is_none_or(|other| !done[other]));
@@ -58,6 +58,13 @@ pub(super) fn settle(
         }
         done[part] = true;
     }
+}
+
+/// A wrench within the intervals, near their middles.
+pub(super) fn middle(push: &Push) -> Wrench {
+    let within = |x: Interval| x.lower / 2.0 + x.upper / 2.0;
+    let vector = |v: &Vector| Vec3::new(within(v.x), within(v.y), within(v.z));
+    Wrench::new(vector(&push.force), vector(&push.torque))
 }
 
 /// One component of what a contact or connection carries, as a part feels it.

@@ -6,7 +6,7 @@ use crate::statics::{Anchor, Assessment, Model, Structure, face_forces};
 use super::super::balance::{movable, sums};
 use super::super::forest::{carry, forest};
 use super::super::{Carried, Stress};
-use super::settle::{Forces, settle};
+use super::settle::{Forces, middle, settle};
 
 /// Extra pressure on faces, relative to the forces on the bodies that they join; tried
 /// in turn.
@@ -69,7 +69,7 @@ fn balanced(structure: &Structure, answer: &Assessment, way: Way) -> Option<Stre
         }
         let (rest, left) = carry(structure, &forest, &sums);
         for (wrench, rest) in wrenches.iter_mut().zip(rest) {
-            *wrench += Wrench::new(rest.force.middle(), rest.torque.middle());
+            *wrench += middle(&rest);
         }
         contacts = stress.contacts;
         let mut forces = Forces { wrenches: &mut wrenches, contacts: &mut contacts };
