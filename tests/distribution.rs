@@ -82,33 +82,46 @@ fn the_utilisation_stays_and_the_sum_does_not_grow() {
 }
 
 /// The paper adds the sum with a small weight, and gives up some of the utilisation for
-/// it. Where that is no more than our bracket leaves open, our sum is no more than 2 %
-/// above the paper's; and the paper's objective is no more at its state than at ours.
+/// it. Where that is no more than rounding, our sum is no more than the paper's; and the
+/// paper's objective is no more at its state than at ours. Where our bracket is wider
+/// than that, its upper end allows a lesser sum.
 #[test]
 fn the_papers_weighted_program_agrees() {
     let (mut compared, mut equal) = (0, 0);
-    for kind in [Kind::Ordinary, Kind::Redundant, Kind::Standing] {
-        for (recipe, s, value) in solved(kind, 0..60).filter(|(recipe, ..)| recipe.bodies <= 8) {
+    for kind in Kind::ALL {
+        for (recipe, s, value) in solved(kind, 0..40).filter(|(recipe, ..)| recipe.bodies <= 8) {
             let weight = 1e-5 * value.utilisation.upper.clamp(1e-3, 1.0);
-            let (paper::Answer::Utilisation(t), least) = paper::solve_weighted(&s, 1e-11, weight) else { continue };
+            let (paper::Answer::Utilisation(t), terms) = paper::solve_weighted(&s, 1e-11, weight) else { continue };
             let paper::Answer::Utilisation(alone) = paper::solve(&s, 1e-11) else { continue };
             assert!(alone <= t + 1e-8 * t.max(1.0), "{recipe:?}: {alone} is not the least, {t}");
             let full = full(&s);
             if full.distribution != Distribution::Least {
                 continue;
             }
-            let (found, upper) = (sum(&s, &full), full.utilisation.upper);
+            let (found, least, upper) = (sum(&s, &full), terms.iter().sum::<f64>(), full.utilisation.upper);
             let (newton, rounding) = (weight / paper::typical_force(&s), 1e-9 * t.max(1.0));
             assert!(t + newton * least <= upper + newton * found + rounding, "{recipe:?}: {found} below {least}");
-            if t <= upper + 1e-9 * upper.max(1.0) {
-                let small = 1e-6 * paper::typical_force(&s);
-                assert!(found <= least * 1.02 + small, "{recipe:?}: {found} is more than {least}");
+            if t <= upper + 1e-12 * upper.max(1.0) {
+                let small = 1e-9 * paper::typical_force(&s);
+                assert!(found <= least * (1.0 + 1e-6) + small, "{recipe:?}: {found} is more than {least}");
                 compared += 1;
-                equal += usize::from(found >= least * (1.0 - 1e-3));
+                equal += usize::from(found >= least * (1.0 - 1e-3) - small);
             }
         }
     }
-    assert!(compared >= 20 && equal * 4 >= compared * 3, "{compared} compared, {equal} equal");
+    assert!(compared >= 150 && equal * 20 >= compared * 19, "{compared} compared, {equal} equal");
+}
+
+/// What flows through a body without weight counts like any other: the solver was once
+/// asked in units of its own small loads, and returned 68.913 N for this structure.
+#[test]
+fn a_weightless_body_is_no_reason_for_more() {
+    let s = structure(&Recipe { kind: Kind::Redundant, bodies: 8, seed: 17 });
+    let (paper::Answer::Utilisation(t), terms) = paper::solve_weighted(&s, 1e-11, 1e-4) else { panic!("it stands") };
+    let full = full(&s);
+    assert!(s.bodies.iter().any(|body| body.mass == 0.0) && t <= full.utilisation.upper + 1e-12);
+    let (found, least) = (sum(&s, &full), terms.iter().sum::<f64>());
+    assert!((found - least).abs() <= 1e-6 * least, "{found} is not {least}");
 }
 
 #[test]

@@ -5,8 +5,8 @@ use std::fmt;
 use crate::statics::{Bracket, Verdict};
 
 use super::Certificate;
+use super::allowance::Allowance;
 use super::balance::upper_bound;
-use super::models::Allowance;
 use super::motion::lower_bound;
 use super::sound::unsound;
 

@@ -59,11 +59,6 @@ impl Interval {
         let root = Self::outward(self.lower.max(0.0).sqrt(), self.upper.max(0.0).sqrt());
         Self { lower: root.lower.max(0.0), upper: root.upper }
     }
-
-    /// A double within the interval, near its middle.
-    pub fn middle(self) -> f64 {
-        self.lower / 2.0 + self.upper / 2.0
-    }
 }
 
 impl Add for Interval {
@@ -178,11 +173,6 @@ impl Vector {
     pub fn unit(&self) -> Self {
         let norm = self.norm();
         Self { x: self.x / norm, y: self.y / norm, z: self.z / norm }
-    }
-
-    /// A vector of doubles within the intervals, near their middles.
-    pub fn middle(&self) -> Vec3 {
-        Vec3::new(self.x.middle(), self.y.middle(), self.z.middle())
     }
 }
 

@@ -34,16 +34,21 @@
 //!
 //! # Reading order
 //!
-//! This page, [`interval`], `models` (what the connectors do), `balance` (the bound
-//! from above), `motion` (the bound from below), `check` (claims against proofs):
-//! together the checker, which shares no code with the solver. `issue` makes a
-//! certificate from an answer of the oracle and is not to be trusted. Knows no
-//! files, no robots and nothing of how the fields were found.
+//! This page, [`interval`], `models` (what the connectors do; `face` for one of them),
+//! `balance` (the bound from above; `forest`, `loads` and `allowance` for what rounding
+//! leaves), `motion` (the bound from below), `check` (claims against proofs) and `sound`
+//! (data that mean nothing): together the checker, which shares no code with the solver.
+//! `issue` makes a certificate from an answer of the oracle and is not to be trusted.
+//! Knows no files, no robots and nothing of how the fields were found.
 
+mod allowance;
 mod balance;
 mod check;
+mod face;
+mod forest;
 pub mod interval;
 mod issue;
+mod loads;
 mod models;
 mod motion;
 mod sound;

@@ -2,10 +2,15 @@
 //!
 //! The equations are those of [`Model`]; nothing here is shared with the oracle.
 
+use std::ops::{Div, Mul};
+
+use crate::spatial::Wrench;
 use crate::statics::{Connector, Model};
 
+use super::Carried;
+use super::allowance::Allowance;
+use super::face::on_three_points;
 use super::interval::{Interval, Vector, length};
-use super::{Carried, DATA};
 
 /// A wrench that is known in intervals.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,6 +22,15 @@ pub(super) struct Push {
 impl Push {
     pub(super) const ZERO: Self = Self { force: Vector::ZERO, torque: Vector::ZERO };
 
+    pub(super) fn exact(wrench: &Wrench) -> Self {
+        Self { force: Vector::exact(&wrench.force), torque: Vector::exact(&wrench.torque) }
+    }
+
+    /// A force alone.
+    pub(super) fn of(force: Vector) -> Self {
+        Self { force, torque: Vector::ZERO }
+    }
+
     /// The same wrench about a point that `lever` leads from to the present one.
     pub(super) fn moved(&self, lever: &Vector) -> Self {
         Self { force: self.force, torque: self.torque + lever.cross(&self.force) }
@@ -24,6 +38,11 @@ impl Push {
 
     pub(super) fn plus(&self, other: &Self) -> Self {
         Self { force: self.force + other.force, torque: self.torque + other.torque }
+    }
+
+    /// At most how large its force and its torque are, in N and N m.
+    pub(super) fn sizes(&self) -> [f64; 2] {
+        [self.force.norm().upper, self.torque.norm().upper]
     }
 
     pub(super) fn negative(&self) -> Self {
@@ -41,28 +60,6 @@ pub(super) struct Motion {
     pub speed: [f64; 2],
 }
 
-/// Keeps account of what is forgiven because data are meant up to 1e-12 only.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Allowance {
-    /// The largest share that was forgiven.
-    pub forgiven: f64,
-}
-
-impl Allowance {
-    /// Whether an `excess` over nothing is at most 1e-12 of `size`.
-    pub(super) fn forgives(&mut self, excess: f64, size: f64) -> bool {
-        if excess <= 0.0 {
-            return true;
-        }
-        let share = excess / size;
-        if !(share <= DATA) {
-            return false;
-        }
-        self.forgiven = self.forgiven.max(share);
-        true
-    }
-}
-
 /// Upper bound on the utilisation that a connector needs to carry what it is said
 /// to carry and, on top, the small wrench `rest` on the child in the connection frame.
 ///
@@ -72,19 +69,12 @@ pub(super) fn demand(connector: &Connector, carried: &Carried, rest: &Push) -> R
     let strength = Interval::exact(connector.strength);
     match (&connector.model, carried) {
         (Model::Cone { friction, radius }, Carried::Wrench(wrench)) => {
-            let (f, m) = (Vector::exact(&wrench.force) + rest.force, Vector::exact(&wrench.torque) + rest.torque);
-            let over = |x: Interval, limit: f64| x / Interval::exact(limit);
-            let rubbing = length(&[
-                over(f.x, friction[0]),
-                over(f.y, friction[1]),
-                over(m.x, radius[0]),
-                over(m.y, radius[1]),
-                over(m.z, radius[2]),
-            ]);
+            let Push { force: f, torque: m } = Push::exact(wrench).plus(rest);
+            let rubbing = scaled([f.x, f.y, m.x, m.y, m.z], friction, radius, Div::div);
             Ok(((rubbing - f.z) / strength).upper.max(0.0))
         }
         (Model::Box { .. }, Carried::Wrench(wrench)) => {
-            let (f, m) = (Vector::exact(&wrench.force) + rest.force, Vector::exact(&wrench.torque) + rest.torque);
+            let Push { force: f, torque: m } = Push::exact(wrench).plus(rest);
             let mut largest = 0.0_f64;
             for (component, limits) in [f.x, f.y, f.z, m.x, m.y, m.z].into_iter().zip(limits(&connector.model)) {
                 for (amount, limit) in [-component.lower, component.upper].into_iter().zip(limits) {
@@ -120,67 +110,22 @@ pub(super) fn demand(connector: &Connector, carried: &Carried, rest: &Push) -> R
     }
 }
 
-/// Forces at the three points of a face that span the largest triangle, which add up
-/// to `push`; `None` when there is no triangle. Normal forces by barycentric
-/// coordinates, shear evenly, torsion by forces around the triangle's centre.
-fn on_three_points(points: &[[f64; 2]], push: &Push) -> Option<[(usize, Vector); 3]> {
-    let corners = largest_triangle(points)?;
-    let at = corners.map(|i| points[i].map(Interval::exact));
-    let cross = |a: [Interval; 2], b: [Interval; 2]| a[0] * b[1] - a[1] * b[0];
-    let area = cross(at[0], at[1]) + cross(at[1], at[2]) + cross(at[2], at[0]);
-    let third = |k: usize| (at[0][k] + at[1][k] + at[2][k]) / Interval::exact(3.0);
-    let centre = [third(0), third(1)];
-    let arms = at.map(|p| [p[0] - centre[0], p[1] - centre[1]]);
-    let inertia = arms.iter().fold(Interval::ZERO, |sum, arm| sum + arm[0].square() + arm[1].square());
-    let torsion = push.torque.z - cross(centre, [push.force.x, push.force.y]);
-    let turning = torsion / inertia;
-    let mut shares = corners.map(|corner| (corner, Vector::ZERO));
-    for k in 0..3 {
-        let (b, c) = (at[(k + 1) % 3], at[(k + 2) % 3]);
-        // First moments of the normal forces: sum g_z y = tau_x, sum g_z x = -tau_y.
-        let moments = (c[1] - b[1]) * push.torque.y + (c[0] - b[0]) * push.torque.x;
-        shares[k].1 = Vector {
-            x: push.force.x / Interval::exact(3.0) - turning * arms[k][1],
-            y: push.force.y / Interval::exact(3.0) + turning * arms[k][0],
-            z: (cross(b, c) * push.force.z + moments) / area,
-        };
-    }
-    Some(shares)
-}
-
-fn largest_triangle(points: &[[f64; 2]]) -> Option<[usize; 3]> {
-    let mut best = (0.0, None);
-    for a in 0..points.len() {
-        for b in 0..a {
-            for c in 0..b {
-                let [p, q, r] = [points[a], points[b], points[c]];
-                let area = ((q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])).abs();
-                if area > best.0 {
-                    best = (area, Some([a, b, c]));
-                }
-            }
-        }
-    }
-    best.1
-}
-
-/// How well a connector carries any wrench whatever, a measure for choosing among
-/// several; `None` when there are wrenches that it cannot carry.
-pub(super) fn holding(connector: &Connector) -> Option<f64> {
-    let least = |limits: &[f64]| limits.iter().copied().fold(f64::INFINITY, f64::min);
-    let holding = match &connector.model {
-        Model::Cone { friction, radius } => connector.strength * least(friction).min(least(radius)),
-        Model::Box { .. } => least(limits(&connector.model).as_flattened()),
-        Model::Patch { friction, points } => {
-            largest_triangle(points).map_or(0.0, |_| connector.strength * friction.min(1.0))
-        }
-    };
-    (holding > 0.0).then_some(holding)
+/// Length of a cone's tangential components, each divided by (forces) or multiplied with
+/// (velocities) its friction coefficient or radius.
+fn scaled(
+    parts: [Interval; 5],
+    friction: &[f64; 2],
+    radius: &[f64; 3],
+    by: fn(Interval, Interval) -> Interval,
+) -> Interval {
+    let sizes = friction.iter().chain(radius).map(|size| Interval::exact(*size));
+    let parts: Vec<Interval> = parts.into_iter().zip(sizes).map(|(part, size)| by(part, size)).collect();
+    length(&parts)
 }
 
 /// Limits of the six components of a wrench, each for its negative and its positive
 /// values; none at all for a connector that is no box.
-fn limits(model: &Model) -> [[f64; 2]; 6] {
+pub(super) fn limits(model: &Model) -> [[f64; 2]; 6] {
     match model {
         Model::Box { shear, tension, compression, bending, torsion } => {
             let both = |limit: f64| [limit, limit];
@@ -201,15 +146,7 @@ pub(super) fn dissipation(connector: &Connector, motion: &Motion, allowance: &mu
     let preload_power = || (Interval::exact(connector.strength) * v.z).upper.max(0.0);
     match &connector.model {
         Model::Cone { friction, radius } => {
-            let times = |x: Interval, factor: f64| x * Interval::exact(factor);
-            let rubbing = length(&[
-                times(v.x, friction[0]),
-                times(v.y, friction[1]),
-                times(w.x, radius[0]),
-                times(w.y, radius[1]),
-                times(w.z, radius[2]),
-            ]);
-            opens(v.z, rubbing)?;
+            opens(v.z, scaled([v.x, v.y, w.x, w.y, w.z], friction, radius, Mul::mul))?;
             Ok(preload_power())
         }
         Model::Box { .. } => against_limits(motion, &limits(&connector.model), allowance),

@@ -4,10 +4,11 @@
 use crate::spatial::Vec3;
 use crate::statics::{Anchor, Structure};
 
+use super::allowance::Allowance;
 use super::balance::movable;
 use super::check::Fault;
 use super::interval::{Axes, Interval, Vector};
-use super::models::{Allowance, Motion, dissipation, free, opens};
+use super::models::{Motion, dissipation, free, opens};
 use super::{DATA, Mechanism};
 
 /// What a mechanism proves: a lower bound on the utilisation, 0 when its loads do no

@@ -171,3 +171,112 @@ fn unbound(model: &mut Model) {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::spatial::{Pose, Rotation};
+    use crate::statics::blocks::Vertex;
+    use crate::statics::frame::LinkFrame;
+    use crate::statics::loads::own_loads;
+    use crate::statics::structure::{Anchor, Body, Connection, Contact};
+
+    /// A pile of cubes on each other, joined by magnets, the lowest on four contacts, on
+    /// a ground that is inclined by the tangent `slope`.
+    fn pile(count: usize, friction: f64, slope: f64) -> Structure {
+        let mut pile = Structure { gravity: Vec3::new(slope, 0.0, -1.0).normalize() * 9.81, ..Structure::default() };
+        let model = Model::Cone { friction: [0.5; 2], radius: [0.03; 3] };
+        pile.connectors.push(Connector { name: "magnet".to_owned(), strength: 1e-3, model });
+        for i in 0..count {
+            pile.bodies.push(Body { mass: 0.3, com: Vec3::z() * (0.02 + 0.04 * i as f64), fixed: false });
+            if i > 0 {
+                let frame = Pose::from_parts((Vec3::z() * (0.04 * i as f64)).into(), Rotation::identity());
+                let (parent, child) = (Anchor::Body(i - 1), Anchor::Body(i));
+                pile.connections.push(Connection { parent, child, connector: 0, frame });
+            }
+        }
+        for [x, y] in [[0.1, 0.1], [-0.1, 0.1], [-0.1, -0.1], [0.1, -0.1]] {
+            let (against, position, normal) = (Anchor::World, Vec3::new(x, y, 0.0), Vec3::z());
+            pile.contacts.push(Contact { body: 0, against, position, normal, friction });
+        }
+        pile
+    }
+
+    /// A body on two rails along x that hold it in every other direction, however weak.
+    fn on_rails(gravity: Vec3) -> Structure {
+        let mut sled = Structure { gravity, ..Structure::default() };
+        let model =
+            Model::Box { shear: [0.0, 1e-3], tension: 1e-3, compression: 1e-3, bending: [1e-3; 2], torsion: 1e-3 };
+        sled.connectors.push(Connector { name: "rail".to_owned(), strength: 1e-3, model });
+        sled.bodies.push(Body { mass: 1.0, com: Vec3::new(0.02, 0.01, 0.1), fixed: false });
+        for y in [-0.1, 0.1] {
+            let frame = Pose::from_parts(Vec3::new(0.0, y, 0.0).into(), Rotation::identity());
+            sled.connections.push(Connection { parent: Anchor::World, child: Anchor::Body(0), connector: 0, frame });
+        }
+        sled
+    }
+
+    /// The mechanism that is found for the whole as one block, by body.
+    fn collapse(structure: &Structure) -> Option<Vec<Twist>> {
+        let links = (0..structure.connections.len()).map(Link::Connection);
+        let links = links.chain((0..structure.contacts.len()).map(Link::Contact)).collect();
+        let block = Block { root: Vertex::Ground, bodies: (0..structure.bodies.len()).collect(), links };
+        let twists = find(structure, &block, &own_loads(structure))?;
+        lawful(structure, &twists);
+        Some(twists)
+    }
+
+    /// Whether the loads work, no contact resists and no connector but along what it leaves free.
+    fn lawful(structure: &Structure, twists: &[Twist]) {
+        let loads = own_loads(structure);
+        let power: f64 = twists.iter().zip(&loads).map(|(twist, load)| twist.power(&load.wrench)).sum();
+        assert!(power > 0.0, "{power}");
+        let speed = twists.iter().map(|twist| twist.linear.norm()).fold(0.0, f64::max);
+        let relative = |link| LinkFrame::new(structure, link).relative_twist(structure, |body| twists[body]);
+        for (i, contact) in structure.contacts.iter().enumerate() {
+            let v = relative(Link::Contact(i)).linear;
+            assert!(v.z - contact.friction * v.xy().norm() >= -1e-9 * speed, "contact {i}: {v}");
+        }
+        for (i, connection) in structure.connections.iter().enumerate() {
+            let Twist { linear: mut v, angular: w } = relative(Link::Connection(i));
+            if let Model::Box { shear: [0.0, _], .. } = structure.connectors[connection.connector].model {
+                v.x = 0.0;
+            }
+            assert!(v.norm() <= 1e-9 * speed && w.norm() <= 1e-8 * speed, "connection {i}: {v} {w}");
+        }
+    }
+
+    #[test]
+    fn a_pile_slides_where_the_ground_is_steeper_than_friction() {
+        for count in [1, 3] {
+            for friction in [0.0, 1e-3, 0.2, 0.5] {
+                for over in [1e-4, 1e-2, 0.3] {
+                    let slides = collapse(&pile(count, friction, friction + over));
+                    let downhill = slides.expect("nothing holds it")[0].linear;
+                    assert!(downhill.x > 0.0, "{downhill}");
+                    let held = collapse(&pile(count, friction, (friction - over).max(0.0)));
+                    assert!(held.is_none(), "{friction} {over}: {held:?}");
+                }
+            }
+        }
+    }
+
+    /// Its centre of mass is at 0.02 m for every cube, its feet 0.1 m from the middle.
+    #[test]
+    fn a_pile_tips_where_its_weight_leaves_the_feet() {
+        for (count, friction) in [(4, 10.0), (8, 1e3)] {
+            let limit = 0.1 / (0.02 * count as f64);
+            let tips = collapse(&pile(count, friction, limit * 1.01)).expect("it tips");
+            assert!(tips.iter().all(|twist| twist.angular.y > 0.0), "{tips:?}");
+            assert!(collapse(&pile(count, friction, limit * 0.99)).is_none());
+        }
+    }
+
+    /// However weak, what holds is held with strength without bound; along the rails nothing holds.
+    #[test]
+    fn only_what_no_strength_holds_collapses() {
+        let slides = collapse(&on_rails(Vec3::new(-1.0, 3.0, -9.0))).expect("nothing holds it along x");
+        assert!(slides[0].linear.x < 0.0 && slides[0].angular.norm() <= 1e-8 * slides[0].linear.norm());
+        assert!(collapse(&on_rails(Vec3::new(0.0, 3.0, -9.0))).is_none());
+    }
+}

@@ -40,6 +40,11 @@ const ATTEMPTS: [Attempt; 2] = [
     Attempt { tolerance: 1e-10, inset: 0.0, regularization: 1e-8 },
 ];
 
+/// Smallest force scales of bodies, relative to the largest, with which the solver is
+/// asked. What flows through a body without weight can be as much as through any other:
+/// counted in units that are too small its cost is below the solver's tolerance.
+const FLOORS: [f64; 3] = [1e-2, 1e-5, 1e-9];
+
 /// By how much of the larger of it and 1 the solver's residuals may take the shown
 /// field beyond the upper end that was proved before: half of what a value may be off.
 const ROOM: f64 = 5e-8;
@@ -103,58 +108,77 @@ fn improve(
     }
     let program = Program::new(structure, block, loads, Purpose::Utilisation);
     let problem = Problem { structure, block, loads, program: &program };
-    let before = Proved { upper: utilisation.upper, sum: sum(&problem, wrenches, demands), field: wrenches };
+    let before = Proved {
+        upper: utilisation.upper,
+        sum: sum(&problem, wrenches, demands),
+        wrenches: wrenches.clone(),
+        demands: demands.clone(),
+    };
     if before.sum == 0.0 {
         return true;
     }
     let unit_mechanism = (utilisation.lower > 0.0).then_some(&mechanism[..]);
+    let scaled = programs(structure, block, loads, &program);
     for cap in [upper, upper + GIVEN * (limit - upper)] {
-        let least = Least::new(&problem, cap, before.sum);
-        for attempt in &ATTEMPTS {
-            if let Some((field, iterate)) = least.solve(attempt)
-                && let Some((upper, found, field)) = prove(&problem, field, &iterate, unit_mechanism, limit, &before)
-            {
-                utilisation.upper = utilisation.upper.max(upper);
-                (*wrenches, *demands) = (field, found);
-                return true;
-            }
+        let found = scaled.iter().filter_map(|program| {
+            let asked = Problem { program, ..problem };
+            let least = Least::new(&asked, cap, before.sum);
+            ATTEMPTS.iter().find_map(|attempt| {
+                let (mut field, iterate) = least.solve(attempt)?;
+                restore(&asked, &iterate, &mut field, &vec![false; block.links.len()], true);
+                prove(&problem, field, unit_mechanism, limit, &before)
+            })
+        });
+        if let Some(least) = found.min_by(|a, b| a.sum.total_cmp(&b.sum)) {
+            utilisation.upper = utilisation.upper.max(least.upper);
+            (*wrenches, *demands) = (least.wrenches, least.demands);
+            return true;
         }
     }
     false
 }
 
-/// The field that proved a block's bracket.
-struct Proved<'f> {
-    upper: f64,
-    sum: f64,
-    field: &'f [Wrench],
+/// The program of a block with each of the [`FLOORS`] that makes a difference.
+fn programs(structure: &Structure, block: &Block, loads: &[BodyLoad], program: &Program) -> Vec<Program> {
+    let forces = || program.scales.force.iter().copied();
+    let smallest = forces().fold(f64::INFINITY, f64::min) / forces().fold(0.0, f64::max);
+    let needed = FLOORS.iter().position(|floor| *floor <= smallest).unwrap_or(FLOORS.len() - 1);
+    let floored = |floor: &f64| Program::with_floor(structure, block, loads, Purpose::Utilisation, *floor);
+    FLOORS[..=needed].iter().map(floored).collect()
 }
 
-/// Makes a field balance and brings it below `limit`: its upper bound, its demands and
-/// itself. `None` where that fails, or where its sum is no less than it was `before`.
+/// A balanced field of a block with what it proves.
+struct Proved {
+    upper: f64,
+    sum: f64,
+    wrenches: Vec<Wrench>,
+    demands: Vec<f64>,
+}
+
+/// Brings a field that balances below `limit`. `None` where that fails, or where its
+/// sum is no less than it was `before`.
 fn prove(
     problem: &Problem<'_>,
-    mut field: Vec<Wrench>,
-    iterate: &Iterate,
+    mut wrenches: Vec<Wrench>,
     unit_mechanism: Option<&[Twist]>,
     limit: f64,
-    before: &Proved<'_>,
-) -> Option<(f64, Vec<f64>, Vec<Wrench>)> {
-    restore(problem, iterate, &mut field, &vec![false; problem.block.links.len()], true);
-    let (mut upper, mut demands) = problem.upper_bound(&field, unit_mechanism, 0.0)?;
+    before: &Proved,
+) -> Option<Proved> {
+    let (mut upper, mut demands) = problem.upper_bound(&wrenches, unit_mechanism, 0.0)?;
     if upper > limit {
         // Demands are convex: a share of the other field brings it back below the limit.
         let share = (upper - limit) / (upper - before.upper) * (1.0 + 1e-3);
         if !(before.upper < limit && share <= MIXED) {
             return None;
         }
-        for (wrench, proved) in field.iter_mut().zip(before.field) {
+        for (wrench, proved) in wrenches.iter_mut().zip(&before.wrenches) {
             *wrench = *wrench * (1.0 - share) + *proved * share;
         }
-        (upper, demands) = problem.upper_bound(&field, unit_mechanism, 0.0)?;
+        (upper, demands) = problem.upper_bound(&wrenches, unit_mechanism, 0.0)?;
     }
-    let less = upper <= limit && sum(problem, &field, &demands) <= before.sum * (1.0 + NO_MORE);
-    less.then_some((upper, demands, field))
+    let sum = sum(problem, &wrenches, &demands);
+    let less = upper <= limit && sum <= before.sum * (1.0 + NO_MORE);
+    less.then_some(Proved { upper, sum, wrenches, demands })
 }
 
 /// Strengths that a field demands and normal forces of its contacts, added up, in N.

@@ -219,6 +219,11 @@ mod tests {
         ]
     }
 
+    /// An error that the method reaches on every ring: a ninth of what a bracket of 1e-7
+    /// asks for. One of them stops at 1.06e-8, where the next factorisation has lost its
+    /// last digits and the step spoils the balance; `solve_block` keeps the finest iterate.
+    const REACHED: f64 = 1.1e-8;
+
     /// Solves to `tolerance`; `None` when the method gets stuck before.
     fn solve(program: &Program, inset: f64, tolerance: f64) -> Option<Iterate> {
         let mut method = InteriorPoint::new(program, inset, 1.0, Reductions::ALL);
@@ -248,7 +253,7 @@ mod tests {
         for model in models() {
             for friction in [None, Some(0.0), Some(0.6)] {
                 for program in programs(&ring(&model, friction), Purpose::Utilisation) {
-                    let own = solve(&program, 1e-8, 2e-8).expect("solvable");
+                    let own = solve(&program, 1e-8, REACHED).expect("solvable");
                     let other = conic::solve(&program, &attempt).expect("solvable");
                     let (own, other) = (own.t * program.t_scale, other.t * program.t_scale);
                     assert!((own - other).abs() < 1e-7 * other.max(1.0), "{model:?} {friction:?}: {own} {other}");
@@ -299,7 +304,7 @@ mod tests {
         for model in models() {
             let again = || {
                 let programs = programs(&ring(&model, Some(0.3)), Purpose::Utilisation);
-                programs.iter().map(|program| solve(program, 1e-8, 2e-8).expect("solvable").v).collect::<Vec<_>>()
+                programs.iter().map(|program| solve(program, 1e-8, REACHED).expect("solvable").v).collect::<Vec<_>>()
             };
             assert_eq!(again(), again());
         }

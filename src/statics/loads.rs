@@ -154,7 +154,9 @@ mod tests {
         for k in 0..3 {
             assert!(force_off[k] <= error.force[k] + input * rounded.force_size[k]);
             assert!(torque_off[k] <= error.torque[k] + input * rounded.torque_size[k]);
-            assert!(error.torque[k] <= f64::from(count) * f64::EPSILON * rounded.torque_size[k]);
+            // Errors grow with the sums, which partly cancel; sizes and their number with
+            // all terms: at most a five-hundredth of what those would allow.
+            assert!(error.torque[k] <= 2e-3 * f64::from(count) * f64::EPSILON * rounded.torque_size[k]);
         }
     }
 }

@@ -203,3 +203,152 @@ fn balance_groups(structure: &Structure, answer: &mut Assessment) {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::spatial::{Pose, Rotation};
+    use crate::statics::assess::assess;
+    use crate::statics::assessment::Question;
+    use crate::statics::connector::{Connector, Model};
+    use crate::statics::structure::{Body, Connection};
+
+    const WELD: usize = 0;
+    const MAGNET: usize = 1;
+
+    /// Bodies 0, 1 and 2 are welded in a ring that two magnets hold to the world; body 5
+    /// is welded to body 4, which is fixed; body 3 hangs by magnets between the two.
+    fn welded(seed: f64) -> Structure {
+        let vector = |k: f64| Vec3::new((seed + k).sin(), (seed * 1.7 + k).cos(), (seed * 2.3 - k).sin());
+        let mut welded = Structure { gravity: Vec3::new(0.3, -0.2, -9.81), ..Structure::default() };
+        let none = f64::INFINITY;
+        let weld = Model::Box { shear: [none; 2], tension: none, compression: none, bending: [none; 2], torsion: none };
+        let magnet = Model::Cone { friction: [0.6, 0.4], radius: [0.03, 0.04, 0.05] };
+        for (name, model) in [("weld", weld), ("magnet", magnet)] {
+            welded.connectors.push(Connector { name: name.to_owned(), strength: 40.0, model });
+        }
+        for (i, [x, y, z]) in
+            [[0.0, 0.0, 0.0], [0.1, 0.0, 0.0], [0.1, 0.1, 0.0], [0.3, 0.1, 0.0], [0.5, 0.1, 0.1], [0.4, 0.1, 0.0]]
+                .into_iter()
+                .enumerate()
+        {
+            let com = Vec3::new(x, y, z) + vector(i as f64) * 0.01;
+            welded.bodies.push(Body { mass: 0.2 + 0.1 * i as f64, com, fixed: i == 4 });
+        }
+        let body = Anchor::Body;
+        let down = Rotation::from_scaled_axis(Vec3::x() * std::f64::consts::PI);
+        let any = |k: f64| Rotation::from_scaled_axis(vector(k) * 2.0);
+        for (parent, child, connector, at, rotation) in [
+            (Anchor::World, body(0), MAGNET, [0.0, 0.0, 0.05], down),
+            (Anchor::World, body(1), MAGNET, [0.1, 0.0, 0.05], down),
+            (body(0), body(1), WELD, [0.05, 0.0, 0.0], any(1.0)),
+            (body(2), body(1), WELD, [0.1, 0.05, 0.0], any(2.0)),
+            (body(0), body(2), WELD, [0.05, 0.05, 0.0], any(3.0)),
+            (body(2), body(3), MAGNET, [0.2, 0.1, 0.0], any(4.0)),
+            (body(5), body(4), WELD, [0.45, 0.1, 0.0], any(5.0)),
+            (body(5), body(3), MAGNET, [0.35, 0.1, 0.0], any(6.0)),
+        ] {
+            let frame = Pose::from_parts(Vec3::from(at).into(), rotation);
+            welded.connections.push(Connection { parent, child, connector, frame });
+        }
+        let (force, torque) = (vector(7.0), vector(8.0) * 0.1);
+        welded.loads.push(Load { body: 2, force, torque, at: Some(vector(9.0) * 0.2) });
+        welded.loads.push(Load { body: 1, force: vector(10.0), torque: Vec3::zeros(), at: None });
+        welded
+    }
+
+    #[test]
+    fn what_is_welded_becomes_one() {
+        let original = welded(0.0);
+        let merged = Merged::new(&original).expect("there are welds");
+        assert_eq!(merged.of, [Some(0), Some(0), Some(0), Some(3), None, None]);
+        assert_eq!(merged.bodies_saved(&original), 3);
+        let free: Vec<bool> = merged.structure.bodies.iter().map(|body| !body.fixed).collect();
+        assert_eq!(free, [true, false, false, true, false, false]);
+        // It has to hold what its bodies had to, about its own centre.
+        let mut sum = BodyLoad::ZERO;
+        let centre = merged.structure.bodies[0].com;
+        for (load, body) in own_loads(&original).iter().zip(&original.bodies).take(3) {
+            sum += load.moved(&(body.com - centre));
+        }
+        let found = own_loads(&merged.structure)[0].wrench;
+        assert!((found.force - sum.wrench.force).norm() <= 1e-12 * sum.force_size.norm());
+        assert!((found.torque - sum.wrench.torque).norm() <= 1e-12 * sum.torque_size.norm());
+        // Welds within it join it to itself; the others lead to where they did.
+        let ends = |i: usize| (merged.structure.connections[i].parent, merged.structure.connections[i].child);
+        assert_eq!(ends(3), (Anchor::Body(0), Anchor::Body(0)));
+        assert_eq!(ends(5), (Anchor::Body(0), Anchor::Body(3)));
+    }
+
+    #[test]
+    fn without_welds_there_is_nothing_to_merge() {
+        let mut bolted = welded(0.0);
+        if let Model::Box { torsion, .. } = &mut bolted.connectors[WELD].model {
+            *torsion = 1e9;
+        }
+        assert!(Merged::new(&bolted).is_none());
+    }
+
+    /// The original structure balances with the wrenches that are carried back.
+    #[test]
+    fn every_body_balances_with_the_wrenches_carried_back() {
+        for seed in 0..20 {
+            let original = welded(f64::from(seed));
+            let answer = assess(&original, Question::VALUE).expect("a valid structure");
+            assert!(answer.utilisation.upper.is_finite() && answer.left_out.merged_bodies == 3);
+            let mut sums = own_loads(&original);
+            let sizes: Vec<f64> = sums.iter().map(|load| load.force_size.norm()).collect();
+            for (i, state) in answer.connections.iter().enumerate() {
+                let frame = LinkFrame::new(&original, Link::Connection(i));
+                for (side, sign) in frame.sides() {
+                    if let Vertex::Body(body) = side {
+                        let push = frame.to_body(&state.wrench, &original.bodies[body].com) * sign;
+                        sums[body].wrench += push;
+                    }
+                }
+            }
+            for (i, body) in original.bodies.iter().enumerate().filter(|(_, body)| !body.fixed) {
+                let (force, torque) = (sums[i].wrench.force.norm(), sums[i].wrench.torque.norm());
+                assert!(
+                    force <= 1e-9 * sizes[i] && torque <= 1e-10 * sizes[i],
+                    "{seed}: {body:?} {force:e} {torque:e}"
+                );
+            }
+            // The ring is closed by one weld more than a tree needs; none demands anything.
+            let welds = [2, 3, 4].map(|i| &answer.connections[i]);
+            assert_eq!(welds.iter().filter(|state| state.wrench == Wrench::ZERO).count(), 1);
+            assert!(welds.iter().all(|state| (state.strength, state.utilisation) == (0.0, 0.0)));
+        }
+    }
+
+    /// The mechanism that is carried back moves nothing across a weld, opens every
+    /// magnet, and its power over what they dissipate is the lower bound.
+    #[test]
+    fn the_mechanism_carried_back_is_admissible() {
+        for seed in 0..20 {
+            let original = welded(f64::from(seed));
+            let answer = assess(&original, Question::VALUE).expect("a valid structure");
+            let mut dissipated = 0.0;
+            for (i, connection) in original.connections.iter().enumerate() {
+                let frame = LinkFrame::new(&original, Link::Connection(i));
+                let relative = frame.relative_twist(&original, |body| answer.mechanism[body]);
+                let Twist { linear: v, angular: w } = relative;
+                match &original.connectors[connection.connector].model {
+                    Model::Cone { friction: [a, b], radius: [c, d, e] } => {
+                        let rubbing = Vec3::new(c * w.x, d * w.y, e * w.z).norm().hypot((a * v.x).hypot(b * v.y));
+                        assert!(v.z >= rubbing, "{seed}: {i} opens at {} of {rubbing}", v.z);
+                        dissipated += original.connectors[connection.connector].strength * v.z;
+                    }
+                    Model::Box { .. } | Model::Patch { .. } => {
+                        let speed = answer.mechanism.iter().map(|twist| twist.linear.norm()).fold(0.0, f64::max);
+                        assert!(v.norm() <= 1e-12 * speed && w.norm() <= 1e-10 * speed, "{seed}: {i} {relative:?}");
+                    }
+                }
+            }
+            let loads = own_loads(&original);
+            let power: f64 = answer.mechanism.iter().zip(&loads).map(|(twist, load)| twist.power(&load.wrench)).sum();
+            let lower = answer.utilisation.lower;
+            assert!(lower > 0.0 && (power / dissipated - lower).abs() <= 1e-9 * lower, "{seed}: {power} {dissipated}");
+        }
+    }
+}

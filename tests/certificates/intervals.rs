@@ -26,7 +26,7 @@ fn held(random: &mut Random) -> (Interval, f64) {
     let (a, b) = (number(random), number(random));
     let width = if random.chance(0.5) { 0.0 } else { b.abs() };
     let interval = Interval { lower: a, upper: a + width };
-    let inside = [interval.lower, interval.upper, interval.middle()][random.below(3)];
+    let inside = [interval.lower, interval.upper, f64::midpoint(interval.lower, interval.upper)][random.below(3)];
     (interval, inside)
 }
 
@@ -134,7 +134,7 @@ fn axes_turn_vectors_as_rotations_do() {
         let (there, expected) = (axes.to_world(&Vector::exact(&v)), rotation * v);
         let near = |found: &Vector, v: &Vec3| {
             let parts = [(found.x, v.x), (found.y, v.y), (found.z, v.z)];
-            parts.iter().all(|(x, v)| x.upper - x.lower < 1e-14 && (x.middle() - v).abs() < 1e-14)
+            parts.iter().all(|(x, v)| x.upper - x.lower < 1e-14 && (f64::midpoint(x.lower, x.upper) - v).abs() < 1e-14)
         };
         assert!(near(&there, &expected), "{there:?} {expected:?}");
         let back = axes.to_local(&there);

@@ -2,9 +2,10 @@
 
 use std::time::{Duration, Instant};
 
-use steadfast::certificate::check;
+use steadfast::certificate::{DATA, check, issue};
 use steadfast::statics::{Bracket, Question, Structure, Verdict, assess};
 
+use crate::members::{self, Size};
 use crate::random::{Kind, Recipe, structure};
 use crate::{certify, families, library};
 
@@ -60,23 +61,63 @@ fn certified_brackets_hold_what_follows_by_hand() {
     }
 }
 
-/// Brackets of random structures verify, and are hardly wider than the oracle's.
+/// Every stiff or extreme structure whose utilisation is known by hand: the certified
+/// bracket holds it, up to data that are meant to 1e-12 only.
+#[test]
+fn every_stiff_family_is_certified() {
+    let mut certified = 0;
+    for member in members::all().into_iter().filter(|member| member.size == Size::Small) {
+        let (structure, truth) = (member.make)();
+        if structure.bodies.len() > 10_000 {
+            continue;
+        }
+        let what = format!("{} {}", member.family, member.name);
+        let answer = assess(&structure, Question::VALUE).unwrap();
+        let certificate = issue(&structure, &answer).unwrap_or_else(|refused| panic!("{what}: {refused}"));
+        let Bracket { lower, upper } = certificate.utilisation;
+        let room = 1e-11 * truth;
+        let holds = lower == truth || (lower <= truth + room && truth - room <= upper);
+        assert!(holds, "{what}: {truth}, [{lower}, {upper}]");
+        // What preparing the fields may cost at either end.
+        let wider = 2e-5 * truth.max(1.0);
+        assert!(lower == upper || upper - lower <= answer.utilisation.width() + wider, "{what}: [{lower}, {upper}]");
+        certified += 1;
+    }
+    assert!(certified >= 700, "{certified}");
+}
+
+/// Brackets of random structures verify, and hold the oracle's.
 #[test]
 fn random_structures_are_certified() {
     let (mut certified, mut refusals) = (0, Vec::new());
     for kind in Kind::ALL {
-        for seed in 0..30 {
+        for seed in 0..40 {
             let recipe = Recipe { kind, bodies: 1 + (seed as usize * 7) % 13, seed };
-            match certify(&structure(&recipe)) {
+            let structure = structure(&recipe);
+            let answer = assess(&structure, Question::VALUE).unwrap();
+            match issue(&structure, &answer) {
                 Ok(certificate) => {
-                    check(&certificate).unwrap_or_else(|faults| panic!("{recipe:?}: {faults:?}"));
+                    let proof = check(&certificate).unwrap_or_else(|faults| panic!("{recipe:?}: {faults:?}"));
+                    let (claimed, asked) = (certificate.utilisation, answer.utilisation);
+                    assert!(claimed.lower <= asked.lower && asked.upper <= claimed.upper, "{recipe:?}");
+                    assert!(proof.forgiven <= DATA, "{recipe:?}: {proof:?}");
                     certified += 1;
                 }
                 Err(refused) => refusals.push((recipe, refused.to_string())),
             }
         }
     }
-    assert!(refusals.len() * 50 <= certified, "{refusals:#?}");
+    assert!(refusals.len() * 200 <= certified, "{refusals:#?}");
+}
+
+/// Where numbers are too short for a proof, the refusal says what is left and why.
+#[test]
+fn a_refusal_says_why() {
+    let structure = structure(&Recipe { kind: Kind::Friction, bodies: 8, seed: 196 });
+    let refused = certify(&structure).unwrap_err();
+    assert!(refused.forces > 1e4, "{refused:?}");
+    let said = refused.to_string();
+    assert!(said.contains("lacks") && said.contains("times the loads"), "{said}");
 }
 
 #[test]
@@ -98,7 +139,7 @@ fn decisions_are_certified_as_well() {
         let structure = structure(&recipe);
         let answer = assess(&structure, Question::Decide(1.0)).unwrap();
         if answer.verdict != Verdict::Undecided {
-            let certificate = steadfast::certificate::issue(&structure, &answer).unwrap();
+            let certificate = issue(&structure, &answer).unwrap();
             assert_eq!(certificate.verdict, answer.verdict, "{recipe:?}");
         }
     }

@@ -4,6 +4,9 @@
 #[path = "../support/families/mod.rs"]
 #[allow(dead_code, unused_imports, reason = "other tests use the other families")]
 mod families;
+#[path = "../support/stiff.rs"]
+#[allow(dead_code, reason = "their widths are the oracle's concern")]
+mod members;
 #[path = "../support/random.rs"]
 mod random;
 

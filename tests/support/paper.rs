@@ -30,8 +30,8 @@ pub fn solve(structure: &Structure, tolerance: f64) -> Answer {
 
 /// Asks the solver at `tolerance` for the least utilisation plus `weight` times the
 /// sum, per typical force, of all strengths and of the normal forces of all contacts:
-/// the utilisation and that sum in N.
-pub fn solve_weighted(structure: &Structure, tolerance: f64, weight: f64) -> (Answer, f64) {
+/// the utilisation and the terms of that sum in N, connections first.
+pub fn solve_weighted(structure: &Structure, tolerance: f64, weight: f64) -> (Answer, Vec<f64>) {
     let program = Program::new(structure);
     let (width, height) = (program.columns.len(), program.rhs.len());
     let settings: Option<DefaultSettings<f64>> = DefaultSettingsBuilder::default()
@@ -59,16 +59,16 @@ pub fn solve_weighted(structure: &Structure, tolerance: f64, weight: f64) -> (An
     let nothing = CscMatrix::zeros((width, width));
     let solver =
         settings.and_then(|s| DefaultSolver::new(&nothing, &objective, &matrix, &program.rhs, &program.cones, s).ok());
-    let Some(mut solver) = solver else { return (Answer::GaveUp(f64::NAN), f64::NAN) };
+    let Some(mut solver) = solver else { return (Answer::GaveUp(f64::NAN), Vec::new()) };
     solver.solve();
     let x = &solver.solution.x;
-    let sum = program.further.iter().map(|&column| x[column]).sum::<f64>() * program.force;
+    let terms = program.further.iter().map(|&column| x[column] * program.force).collect();
     let answer = match solver.solution.status {
         SolverStatus::Solved => Answer::Utilisation(x[0]),
         SolverStatus::PrimalInfeasible => Answer::Infeasible,
         _ => Answer::GaveUp(x[0]),
     };
-    (answer, sum)
+    (answer, terms)
 }
 
 /// `A x + s = b`, s in the cones; x_0 is the utilisation.

@@ -7,19 +7,26 @@ use super::super::Mechanism;
 use super::super::balance::movable;
 
 /// Motions of a link, relative to the fastest, below which its two bodies count as
-/// moving as one; tried in turn.
-const AS_ONE: [f64; 4] = [1e-12, 1e-9, 1e-7, 0.0];
+/// moving as one; tried in turn. The last two for a collapse alone: where the loads of
+/// any motion without resistance do work, the motion need not be the fastest.
+const AS_ONE: [f64; 6] = [1e-12, 1e-9, 1e-7, 0.0, 1e-5, 1e-3];
 
-/// How much faster things open, relative to the fastest motion of a link; tried in turn.
-const OPENING: [f64; 7] = [0.0, 4e-15, 1e-13, 1e-11, 1e-9, 1e-8, 1e-7];
+/// How much faster things open, relative to the fastest motion of a link; tried in turn,
+/// the last three for a collapse alone.
+const OPENING: [f64; 10] = [0.0, 4e-15, 1e-13, 1e-11, 1e-9, 1e-8, 1e-7, 1e-5, 1e-3, 1e-2];
 
 /// Mechanisms near the given one (a twist per body, of its centre of mass), the
 /// nearest first.
-pub(super) fn prepare<'s>(structure: &'s Structure, twists: &'s [Twist]) -> impl Iterator<Item = Mechanism> + 's {
+pub(super) fn prepare<'s>(
+    structure: &'s Structure,
+    twists: &'s [Twist],
+    collapse: bool,
+) -> impl Iterator<Item = Mechanism> + 's {
     let links = links(structure);
-    AS_ONE.iter().flat_map(move |threshold| {
+    let (as_one, opening) = if collapse { (&AS_ONE[..], &OPENING[..]) } else { (&AS_ONE[..4], &OPENING[..7]) };
+    as_one.iter().flat_map(move |threshold| {
         let grouped = Grouped::new(structure, twists, &links, *threshold);
-        OPENING.iter().map(move |opening| grouped.opened(*opening))
+        opening.iter().map(move |opening| grouped.opened(*opening))
     })
 }
 
