@@ -171,7 +171,7 @@ impl Knowledge for Carried<'_> {
         };
         let climbed = Ladder::new(problem, self.question).climb(self.motion(block), field, known, self.falls);
         // A solver's wrenches are shared in another way.
-        self.remember(block, if climbed.part.answers(self.question) { &climbed.points } else { &[] });
+        self.remember(block, if climbed.part.answers(self.question, 0.0) { &climbed.points } else { &[] });
         Some(climbed.part)
     }
 
