@@ -18,9 +18,10 @@ use super::structure::Structure;
 use super::tolerances::DATA;
 use super::validate::{InvalidStructure, validate};
 
-/// Bodies in several blocks from which on they are solved at the same time: fewer are
-/// solved before other threads have woken.
-const WORTH_THREADS: usize = 32;
+/// Bodies in several blocks from which on they are solved at the same time, some
+/// milliseconds of work: for less, waiting for threads that others keep busy costs more
+/// than they save.
+const WORTH_THREADS: usize = 256;
 
 /// Finds the utilisation of `structure` as a bracket, and all that follows from it.
 ///
