@@ -117,11 +117,12 @@ fn verdicts_agree_however_they_are_found() {
     }
 }
 
-/// Rings that hang from the ground one beside the other: as many blocks.
+/// Rings that hang from the ground one beside the other, each of which some strength holds: as many blocks.
 fn rings(count: usize) -> Structure {
     let mut all = Structure::default();
-    for seed in 0..count as u64 {
-        let one = structure(&Recipe { kind: Kind::Redundant, bodies: 6, seed });
+    let candidates = (0..).map(|seed| structure(&Recipe { kind: Kind::Redundant, bodies: 6, seed }));
+    let holds = |one: &Structure| assess(one, Question::VALUE).expect("valid").utilisation.upper.is_finite();
+    for one in candidates.filter(holds).take(count) {
         let (bodies, connectors) = (all.bodies.len(), all.connectors.len());
         let anchor = |anchor: Anchor| match anchor {
             Anchor::World => Anchor::World,
