@@ -11,7 +11,7 @@ use random::{Kind, Random, Recipe, structure};
 use recheck::recheck;
 use steadfast::statics::{
     Anchor, Assessment, Bracket, Connector, Model, Question, Reductions, Rung, Structure, Verdict, assess,
-    assess_reduced,
+    assess_reduced, explain,
 };
 
 /// Relative room for rounding in what is left of the data.
@@ -117,11 +117,12 @@ fn verdicts_agree_however_they_are_found() {
     }
 }
 
-/// Rings that hang from the ground one beside the other: as many blocks.
+/// Rings that hang from the ground one beside the other, each of which some strength holds: as many blocks.
 fn rings(count: usize) -> Structure {
     let mut all = Structure::default();
-    for seed in 0..count as u64 {
-        let one = structure(&Recipe { kind: Kind::Redundant, bodies: 6, seed });
+    let candidates = (0..).map(|seed| structure(&Recipe { kind: Kind::Redundant, bodies: 6, seed }));
+    let holds = |one: &Structure| assess(one, Question::VALUE).expect("valid").utilisation.upper.is_finite();
+    for one in candidates.filter(holds).take(count) {
         let (bodies, connectors) = (all.bodies.len(), all.connectors.len());
         let anchor = |anchor: Anchor| match anchor {
             Anchor::World => Anchor::World,
@@ -149,7 +150,10 @@ fn rings(count: usize) -> Structure {
 
 #[test]
 fn the_number_of_threads_changes_nothing_to_the_last_bit() {
-    let structure = rings(9);
+    let structure = rings(80);
+    let remaining = explain(&structure, Reductions::ALL).expect("valid").remaining;
+    let bodies: usize = remaining[1..].iter().map(|block| block.bodies).sum();
+    assert!(bodies > 256, "{bodies} bodies are not worth threads");
     let thresholds = [0.0, 0.3, 1.0, 10.0, 1e6].map(Question::Decide);
     for question in thresholds.into_iter().chain([Question::VALUE]) {
         let alone = ask(&structure, question, Reductions { parallel: false, ..Reductions::ALL });
@@ -168,6 +172,32 @@ fn every_block_of_several_is_solved_on_its_own() {
     assert!(answer.left_out.solved_blocks > 1, "{:?}", answer.left_out);
     let whole = ask(&structure, Question::VALUE, Reductions::NONE);
     assert!(whole.left_out.solved_blocks <= 1 && whole.left_out.closed_form_connections == 0, "{:?}", whole.left_out);
+}
+
+/// The value of the whole is that of the block that needs most; how well the others are known
+/// does not widen it, and what is shown of them holds.
+#[test]
+fn blocks_that_do_not_matter_do_not_widen_the_answer() {
+    let mut structure = rings(9);
+    let all = assess(&structure, Question::VALUE).expect("valid");
+    let largest = all.connections.iter().map(|state| state.utilisation).fold(0.0, f64::max);
+    assert!(largest <= all.utilisation.upper);
+    assert!(Question::VALUE.is_answered_by(&all.utilisation), "{:?}", all.utilisation);
+    recheck(&structure, &all).expect("its own fields prove the bracket");
+    // With that one made strong, another one matters.
+    let critical = all.connections.iter().position(|state| state.critical).expect("one breaks");
+    let strong = structure.connections[critical].connector;
+    structure.connectors[strong].strength *= 1e3;
+    if let Model::Box { shear, tension, compression, bending, torsion } = &mut structure.connectors[strong].model {
+        for limit in shear.iter_mut().chain([tension, compression]).chain(bending).chain([torsion]) {
+            *limit *= 1e3;
+        }
+    }
+    let other = assess(&structure, Question::VALUE).expect("valid");
+    assert!(other.utilisation.upper <= all.utilisation.upper, "more strength never harms");
+    assert!(Question::VALUE.is_answered_by(&other.utilisation), "{:?}", other.utilisation);
+    let whole = ask(&structure, Question::VALUE, Reductions::NONE);
+    assert!(may_be_equal(other.utilisation, whole.utilisation), "{:?} {:?}", other.utilisation, whole.utilisation);
 }
 
 #[test]

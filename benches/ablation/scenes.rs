@@ -26,7 +26,9 @@ pub fn all() -> Vec<Scene> {
         ("tree of 200", tree(200)),
         ("truss with trees of 40", with_trees(truss([2, 2, 2]), 8, 5)),
         ("eight trusses", beside_each_other(&truss([2, 2, 2]), 8)),
+        ("eight large trusses", beside_each_other(&truss([4, 3, 2]), 8)),
         ("row of loops", row_of_loops(12)),
+        ("two hanging chains of 1000", hanging_chains(1000)),
         ("cubes on uneven ground", random(Kind::Uneven, 20, 3)),
         ("redundant cubes", random(Kind::Redundant, 20, 5)),
         ("slender cubes", random(Kind::Slender, 40, 4)),
@@ -107,6 +109,30 @@ fn beside_each_other(one: &Structure, count: usize) -> Structure {
         }));
     }
     all
+}
+
+/// Two chains that hang side by side from the world, and a body that both of them hold.
+fn hanging_chains(count: usize) -> Structure {
+    let mut structure = tree(0);
+    let mut ends = Vec::new();
+    for side in [-1.0, 1.0] {
+        let (mut from, mut above) = (Anchor::World, Vec3::x() * (0.05 * side));
+        for link in 0..count {
+            // Not quite straight, so that every component of the wrenches counts.
+            let step = Vec3::new(0.0, 0.02 * (link as f64 + 1.0).sin(), -0.1);
+            let body = hang(&mut structure, from, above, step);
+            (from, above) = (Anchor::Body(body), above + step);
+        }
+        ends.push((from, above));
+    }
+    let [(one, above), (other, beside)] = ends[..] else { return structure };
+    let held = hang(&mut structure, one, above, (beside - above) * 0.5 - Vec3::z() * 0.05);
+    let com = structure.bodies[held].com;
+    let rotation =
+        steadfast::spatial::Rotation::rotation_between(&Vec3::z(), &(com - beside)).expect("not straight down");
+    let frame = Pose::from_parts(((beside + com) * 0.5).into(), rotation);
+    structure.connections.push(Connection { parent: other, child: Anchor::Body(held), connector: 0, frame });
+    structure
 }
 
 /// Loops of six bodies, each hanging from a body of the one before.

@@ -1,7 +1,7 @@
 //! Which measurements go into which figure.
 
 use crate::growth::{self, Point};
-use crate::methods::{Claim, Method};
+use crate::methods::{Claim, LeftIn, Method};
 use crate::plot::{Dot, Figure, Look, Mark, Panel, Series};
 use crate::pyramid::Side;
 use crate::study::Row;
@@ -11,7 +11,9 @@ const FLOOR: f64 = 1e-17;
 
 /// Error against time, a panel per scene of one family.
 pub fn error_against_time(family: &str, rows: &[Row]) -> Figure {
-    let own: Vec<&Row> = rows.iter().filter(|row| row.family == family).collect();
+    // One reduction alone is a matter for a table.
+    let shown = |row: &&Row| !matches!(row.method, Method::Unreduced(left_in, _) if left_in != LeftIn::Everything);
+    let own: Vec<&Row> = rows.iter().filter(|row| row.family == family).filter(shown).collect();
     let panels = own.chunk_by(|a, b| a.scene == b.scene).map(|rows| {
         let floor = rows[0].uncertainty.max(FLOOR);
         let mut series: Vec<Series> = Vec::new();
@@ -74,6 +76,7 @@ const fn look(method: Method) -> Look {
         Method::Pyramid(Side::Inner, _) => ((230, 159, 0), Mark::Up),
         Method::Pyramid(Side::Outer, _) => ((86, 180, 233), Mark::Down),
         Method::ToGap(_) => ((0, 158, 115), Mark::Circle),
+        Method::Unreduced(..) => ((130, 130, 130), Mark::Circle),
         Method::Decide => ((0, 0, 0), Mark::Cross),
         Method::CarriedOver => ((204, 121, 167), Mark::Square),
     };

@@ -110,7 +110,8 @@ impl Run {
             figures::error_against_time(family, &rows).draw(&self.folder().join(name))?;
         }
         let header = format!("{}; medians of processor time, the methods in turns.", self.machine);
-        self.tell("study", &format!("{header}\n\n{}\n{}", tables::exact(&rows), tables::trust(&rows)))
+        let tables = [tables::exact(&rows), tables::reductions(&rows), tables::trust(&rows)];
+        self.tell("study", &format!("{header}\n\n{}", tables.join("\n")))
     }
 
     fn growth(&self) -> Result<(), Failure> {

@@ -1,7 +1,10 @@
 //! The methods that are compared, each with the knob that trades time for accuracy.
 
 use clarabel::solver::SolverStatus;
-use steadfast::statics::{Assessment, Memory, Question, Structure, assess, assess_near};
+use steadfast::statics::{
+    Assessment, Explanation, Memory, Question, Reductions, Remaining, Structure, assess, assess_near, assess_reduced,
+    explain,
+};
 
 use crate::cone_program::{Solution, settings};
 use crate::pyramid::{Side, linear};
@@ -19,10 +22,51 @@ pub enum Method {
     Pyramid(Side, usize),
     /// The oracle, stopped at a gap.
     ToGap(f64),
+    /// The same, with something left in that the scene does not need.
+    Unreduced(LeftIn, f64),
     /// The oracle, asked only whether the utilisation is at most 1.
     Decide,
     /// The same question, first put to the fields of a neighbouring state.
     CarriedOver,
+}
+
+/// Which of the oracle's reductions is switched off. (Solving blocks at the same time is not
+/// among them: everything here is done by one thread.)
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LeftIn {
+    RigidLinks,
+    Blocks,
+    ClosedForm,
+    Chains,
+    Everything,
+}
+
+impl LeftIn {
+    pub const ALL: [Self; 5] = [Self::RigidLinks, Self::Blocks, Self::ClosedForm, Self::Chains, Self::Everything];
+
+    const fn reductions(self) -> Reductions {
+        let all = Reductions::ALL;
+        match self {
+            Self::RigidLinks => Reductions { rigid_links: false, ..all },
+            Self::Blocks => Reductions { blocks: false, ..all },
+            Self::ClosedForm => Reductions { closed_form: false, ..all },
+            Self::Chains => Reductions { chains: false, ..all },
+            Self::Everything => Reductions::NONE,
+        }
+    }
+
+    /// Whether there is anything of the kind in a structure.
+    pub fn is_found_in(self, structure: &Structure) -> bool {
+        let found: Explanation = explain(structure, Reductions::ALL).expect(SOUND);
+        let chains = |block: &Remaining| block.chains > 0;
+        match self {
+            Self::RigidLinks => found.merged_bodies > 0,
+            Self::Blocks => found.remaining.len() > 1,
+            Self::ClosedForm => found.closed_form_connections + found.closed_form_contacts > 0,
+            Self::Chains => found.remaining.iter().any(chains),
+            Self::Everything => Self::ALL[..4].iter().any(|one| one.is_found_in(structure)),
+        }
+    }
 }
 
 /// What a method claims about an answer.
@@ -69,7 +113,11 @@ impl Method {
         for side in [Side::Inner, Side::Outer] {
             all.extend([4, 8, 16, 32].map(|sides| Self::Pyramid(side, sides)));
         }
-        all.extend((1..=9).map(|digits| Self::ToGap(10_f64.powi(-digits))));
+        all.extend([1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9].map(Self::ToGap));
+        for left_in in LeftIn::ALL {
+            let gaps: &[f64] = if left_in == LeftIn::Everything { &[1e-2, 1e-4, 1e-6, 1e-8] } else { &[1e-6] };
+            all.extend(gaps.iter().map(|&gap| Self::Unreduced(left_in, gap)));
+        }
         all.extend([Self::Decide, Self::CarriedOver]);
         all
     }
@@ -82,6 +130,11 @@ impl Method {
             Self::Pyramid(Side::Inner, _) => "pyramid inner",
             Self::Pyramid(Side::Outer, _) => "pyramid outer",
             Self::ToGap(_) => "ours",
+            Self::Unreduced(LeftIn::RigidLinks, _) => "ours, rigid links left in",
+            Self::Unreduced(LeftIn::Blocks, _) => "ours, not cut into blocks",
+            Self::Unreduced(LeftIn::ClosedForm, _) => "ours, no closed form",
+            Self::Unreduced(LeftIn::Chains, _) => "ours, chains left in",
+            Self::Unreduced(LeftIn::Everything, _) => "ours, nothing left out",
             Self::Decide => "ours, verdict",
             Self::CarriedOver => "ours, carried over",
         }
@@ -92,7 +145,7 @@ impl Method {
         match self {
             Self::Paper(tolerance) | Self::Standard(tolerance) => tolerance,
             Self::Pyramid(_, sides) => sides as f64,
-            Self::ToGap(gap) => gap,
+            Self::ToGap(gap) | Self::Unreduced(_, gap) => gap,
             Self::Decide | Self::CarriedOver => 1.0,
         }
     }
@@ -116,6 +169,9 @@ impl Method {
                 solution.as_ref().map_or(Answer::NOTHING, from_dual)
             }
             Self::ToGap(gap) => proved(&assess(structure, Question::ToGap(gap)).expect(SOUND)),
+            Self::Unreduced(left_in, gap) => {
+                proved(&assess_reduced(structure, Question::ToGap(gap), left_in.reductions()).expect(SOUND))
+            }
             Self::Decide => proved(&assess(structure, DECIDE).expect(SOUND)),
             Self::CarriedOver => neighbour.map_or(Answer::NOTHING, |memory| carried_over(structure, memory)),
         }

@@ -62,13 +62,15 @@ pub fn study(scene: &Scene, methods: &[Method], effort: Effort) -> Vec<Row> {
     rows
 }
 
-/// Pyramids only where there are cones to replace, carried-over bounds only where there is a neighbour.
+/// Pyramids only where there are cones to replace, carried-over bounds only where there is a neighbour,
+/// and reductions are switched off only where they have something to leave out.
 fn applies(method: Method, scene: &Scene) -> bool {
     match method {
         Method::Pyramid(..) => {
             standard::program::<f64>(&scene.structure).groups.iter().any(|group| group.0 == Cone::Lorentz)
         }
         Method::CarriedOver => scene.neighbour.is_some(),
+        Method::Unreduced(left_in, _) => left_in.is_found_in(&scene.structure),
         Method::Paper(_) | Method::Standard(_) | Method::ToGap(_) | Method::Decide => true,
     }
 }

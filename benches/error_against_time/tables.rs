@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use crate::growth::{self, FAMILIES, Point, exponent};
-use crate::methods::{Claim, Method};
+use crate::methods::{Claim, LeftIn, Method};
 use crate::study::Row;
 
 /// The error that "exact" means in the first table.
@@ -53,6 +53,33 @@ pub fn exact(rows: &[Row]) -> String {
     text
 }
 
+/// What every reduction saves at a gap of 1e-6, on the scenes that have something to leave out.
+pub fn reductions(rows: &[Row]) -> String {
+    let names = ["rigid links", "blocks", "closed form", "chains", "any"];
+    let mut text = "| scene | bodies | ours ms |".to_owned();
+    for name in names {
+        let _ = write!(text, " without {name} ms |");
+    }
+    text += "\n| --- | ---: | ---: |";
+    text += &" ---: |".repeat(names.len());
+    text += "\n";
+    for rows in rows.chunk_by(|a, b| a.scene == b.scene) {
+        let time = |method: Method| rows.iter().find(|row| row.method == method).map(|row| row.milliseconds);
+        let Some(all) = time(Method::ToGap(EXACT)) else { continue };
+        let without = LeftIn::ALL.map(|left_in| time(Method::Unreduced(left_in, EXACT)));
+        if without.iter().all(Option::is_none) {
+            continue;
+        }
+        let _ = write!(text, "| {} | {} | {} |", rows[0].scene, rows[0].bodies, figures(all));
+        for time in without {
+            let cell = time.map_or_else(|| "-".to_owned(), |time| format!("{} ({:.1})", figures(time), time / all));
+            let _ = write!(text, " {cell} |");
+        }
+        text += "\n";
+    }
+    text
+}
+
 /// How far each method's answers can be trusted, over all scenes.
 pub fn trust(rows: &[Row]) -> String {
     let mut text = "| method | setting | called solved or proved | median error of these | largest error of these | in | given up, or wider than asked | infeasible, or wrong side |\n\
@@ -85,7 +112,7 @@ pub fn trust(rows: &[Row]) -> String {
 
 /// Whether a proved bracket is wider than was asked for.
 fn wider_than_asked(row: &Row) -> bool {
-    let Method::ToGap(gap) = row.method else { return false };
+    let (Method::ToGap(gap) | Method::Unreduced(_, gap)) = row.method else { return false };
     row.answer.upper - row.answer.lower > gap * row.answer.upper.max(1.0)
 }
 

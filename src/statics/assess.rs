@@ -1,28 +1,27 @@
 //! The oracle: cuts a structure into blocks, answers for each, and puts the
 //! answers together.
 
-use crate::spatial::{Twist, Vec3, Wrench};
+use crate::spatial::Twist;
 
-use super::assessment::{Assessment, Bracket, ConnectionState, Distribution, LeftOut, Question, Verdict};
-use super::blocks::{Block, Blocks, Link, Vertex, cut};
-use super::closed_form::{Bridge, assess_bridge};
-use super::distribution;
-use super::frame::LinkFrame;
+use super::answer::Answer;
+use super::assessment::{Assessment, Question};
+use super::blocks::{Block, Blocks, Link, cut};
+use super::closed_form::assess_bridge;
 use super::loads::{BodyLoad, lump, own_loads};
 use super::part::Part;
 use super::reductions::Reductions;
 use super::rejoin::rejoin;
 use super::rigid_links::Merged;
-use super::rung::Rung;
 use super::side_by_side::side_by_side;
 use super::solve_block::assess_block;
 use super::structure::Structure;
-use super::tolerances::{CRITICAL_SHARE, DATA, TIE};
+use super::tolerances::DATA;
 use super::validate::{InvalidStructure, validate};
 
-/// Bodies in several blocks from which on they are solved at the same time: fewer are
-/// solved before other threads have woken.
-const WORTH_THREADS: usize = 32;
+/// Bodies in several blocks from which on they are solved at the same time, some
+/// milliseconds of work: for less, waiting for threads that others keep busy costs more
+/// than they save.
+const WORTH_THREADS: usize = 256;
 
 /// Finds the utilisation of `structure` as a bracket, and all that follows from it.
 ///
@@ -136,14 +135,27 @@ fn assess_pieces(
             return answer.finish();
         }
         match knowledge.bound(structure, &pieces.blocks[index], &loads) {
-            Some(part) if part.answers(question) => {
+            Some(part) if part.answers(question, elsewhere(question, &answer)) => {
                 knowledge.note(&pieces.blocks[index], &part);
                 answer.take(index, part, question);
             }
             _ => open.push(index),
         }
     }
-    let solve = |index: &usize| assess_block(structure, &pieces.blocks[*index], &loads, question, reductions);
+    // The others need not be known any better than that they do not need more than the one
+    // that is expected to need most.
+    if let (Question::ToGap(_), true, false) = (question, open.len() > 1, answer.settled(question)) {
+        let expected = |&index: &usize| load_over_strength(structure, &pieces.blocks[index], &loads);
+        let most = open.iter().map(expected).enumerate().max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0)));
+        let index = open.remove(most.map_or(0, |(place, _)| place));
+        let block = &pieces.blocks[index];
+        let part = assess_block(structure, block, &loads, question, elsewhere(question, &answer), reductions);
+        answer.count_solved(block);
+        knowledge.note(block, &part);
+        answer.take(index, part, question);
+    }
+    let at_least = elsewhere(question, &answer);
+    let solve = |index: &usize| assess_block(structure, &pieces.blocks[*index], &loads, question, at_least, reductions);
     // Merged in the order of the blocks, whoever was first.
     let mut ahead = Vec::new();
     let bodies: usize = open.iter().map(|&index| pieces.blocks[index].bodies.len()).sum();
@@ -166,250 +178,30 @@ fn assess_pieces(
     answer.finish()
 }
 
+/// What other parts of the structure need at least: of the next one, it is enough to know that
+/// it needs no more. Zero where a threshold is all that is asked for, or all of the fields.
+fn elsewhere(question: Question, answer: &Answer<'_>) -> f64 {
+    match question {
+        Question::ToGap(_) => answer.at_least(),
+        Question::Decide(_) | Question::Full => 0.0,
+    }
+}
+
+/// About how a block compares with others in its utilisation: all its loads over its
+/// weakest connection.
+fn load_over_strength(structure: &Structure, block: &Block, loads: &[BodyLoad]) -> f64 {
+    let load: f64 = block.bodies.iter().map(|&body| loads[body].wrench.force.norm()).sum();
+    let strengths = block.links.iter().filter_map(|&link| match link {
+        Link::Connection(i) => Some(structure.connectors[structure.connections[i].connector].strength),
+        Link::Contact(_) => None,
+    });
+    load / strengths.fold(f64::INFINITY, f64::min)
+}
+
 /// The motion in which a body without any support is carried off by its load;
 /// `None` when it is in balance.
 fn drift(load: &BodyLoad) -> Option<Twist> {
     let balanced = load.wrench.force.norm() <= DATA * load.force_size.norm()
         && load.wrench.torque.norm() <= DATA * load.torque_size.norm();
     (!balanced).then_some(Twist::new(load.wrench.force, load.wrench.torque))
-}
-
-/// The answers of the blocks, put together.
-struct Answer<'s> {
-    structure: &'s Structure,
-    blocks: &'s [Block],
-    utilisation: Bracket,
-    collapsed: bool,
-    connections: Vec<ConnectionState>,
-    contacts: Vec<Vec3>,
-    /// The block whose mechanism proves the lower bound, with its motion.
-    moving: Option<(usize, Vec<Twist>)>,
-    mechanism: Vec<Twist>,
-    /// Per block: lower bound, and its links' shares in its mechanism.
-    candidates: Vec<(f64, usize, Vec<f64>)>,
-    left_out: LeftOut,
-    undecided_because: Option<String>,
-    decided_by: Rung,
-    /// The blocks whose fields are still to be chosen.
-    held: Vec<(usize, Part)>,
-    distribution: Distribution,
-}
-
-impl<'s> Answer<'s> {
-    fn new(structure: &'s Structure, blocks: &'s [Block]) -> Self {
-        let idle = ConnectionState { wrench: Wrench::ZERO, strength: 0.0, utilisation: 0.0, critical: false };
-        Self {
-            structure,
-            blocks,
-            utilisation: Bracket::exact(0.0),
-            collapsed: false,
-            connections: vec![idle; structure.connections.len()],
-            contacts: vec![Vec3::zeros(); structure.contacts.len()],
-            moving: None,
-            mechanism: vec![Twist::ZERO; structure.bodies.len()],
-            candidates: Vec::new(),
-            left_out: LeftOut {
-                fixed_bodies: structure.bodies.iter().filter(|body| body.fixed).count(),
-                ..LeftOut::default()
-            },
-            undecided_because: None,
-            decided_by: Rung::ClosedForm,
-            held: Vec::new(),
-            distribution: Distribution::Proof,
-        }
-    }
-
-    fn count_solved(&mut self, block: &Block) {
-        self.left_out.solved_blocks += 1;
-        self.left_out.largest_block_bodies = self.left_out.largest_block_bodies.max(block.bodies.len());
-    }
-
-    /// Whether the blocks so far answer the question for the whole.
-    fn settled(&self, question: Question) -> bool {
-        self.collapsed
-            || match question {
-                Question::Decide(threshold) => self.utilisation.lower > threshold,
-                Question::ToGap(_) | Question::Full => false,
-            }
-    }
-
-    /// Leaves the other blocks unanswered: one of them may need more, or fall.
-    fn stop(&mut self) {
-        self.utilisation.upper = f64::INFINITY;
-        self.undecided_because = Some("the threshold is exceeded, the rest was not asked for".to_owned());
-    }
-
-    fn collapse_afloat(&mut self, root: usize, twist: Twist) {
-        self.collapsed = true;
-        self.mechanism[root] = twist;
-        self.moving = None;
-        self.spread();
-    }
-
-    fn add_bridge(&mut self, index: usize, bridge: &Bridge) {
-        let block = &self.blocks[index];
-        match block.links[0] {
-            Link::Connection(i) => {
-                self.left_out.closed_form_connections += 1;
-                self.record(i, &bridge.wrench, bridge.utilisation.upper);
-            }
-            Link::Contact(i) => {
-                self.left_out.closed_form_contacts += 1;
-                self.contacts[i] = bridge.force;
-            }
-        }
-        if self.collapsed {
-            return;
-        }
-        let lower = bridge.utilisation.lower;
-        if lower > self.utilisation.lower {
-            self.moving = Some((index, vec![bridge.mechanism(self.structure, block)]));
-        }
-        if lower.is_infinite() {
-            self.collapsed = true;
-            return;
-        }
-        if lower > 0.0 && lower >= self.utilisation.lower * (1.0 - TIE) {
-            self.candidates.push((lower, index, vec![1.0]));
-        }
-        self.utilisation = self.utilisation.max(bridge.utilisation);
-    }
-
-    /// Adds a block's answer, or keeps it until all are known where `question` is
-    /// about more than the utilisation.
-    fn take(&mut self, index: usize, part: Part, question: Question) {
-        match part {
-            Part::Stands { .. } if question == Question::Full => self.held.push((index, part)),
-            Part::Stands { .. } | Part::Collapses { .. } => self.add(index, part),
-        }
-    }
-
-    /// Chooses the fields of the blocks that were kept, and adds them.
-    fn choose(&mut self, question: Question, loads: &[BodyLoad]) {
-        if question != Question::Full || self.collapsed {
-            return;
-        }
-        let mut held = std::mem::take(&mut self.held);
-        self.distribution = distribution::choose(self.structure, self.blocks, loads, self.utilisation, &mut held);
-        for (index, part) in held {
-            self.add(index, part);
-        }
-    }
-
-    fn add(&mut self, index: usize, part: Part) {
-        if self.collapsed {
-            return;
-        }
-        match part {
-            Part::Collapses { mechanism, decided_by } => {
-                self.decided_by = self.decided_by.max(decided_by);
-                self.collapsed = true;
-                self.moving = Some((index, mechanism));
-            }
-            Part::Stands {
-                utilisation,
-                wrenches,
-                demands,
-                mechanism,
-                shares,
-                undecided_because,
-                decided_by,
-                unproved: _,
-            } => {
-                self.decided_by = self.decided_by.max(decided_by);
-                for ((&link, wrench), demand) in self.blocks[index].links.iter().zip(&wrenches).zip(demands) {
-                    match link {
-                        Link::Connection(i) => self.record(i, wrench, demand),
-                        Link::Contact(i) => {
-                            self.contacts[i] = LinkFrame::new(self.structure, link).axes * wrench.force;
-                        }
-                    }
-                }
-                if utilisation.lower > self.utilisation.lower {
-                    self.moving = Some((index, mechanism));
-                }
-                self.candidates.push((utilisation.lower, index, shares));
-                self.utilisation = self.utilisation.max(utilisation);
-                self.undecided_because = self.undecided_because.take().or(undecided_because);
-            }
-        }
-    }
-
-    fn record(&mut self, connection: usize, wrench: &Wrench, utilisation: f64) {
-        let rated = self.structure.connectors[self.structure.connections[connection].connector].strength;
-        self.connections[connection] =
-            ConnectionState { wrench: *wrench, strength: utilisation * rated, utilisation, critical: false };
-    }
-
-    /// Carries the moving block's motion on to what hangs from it: every block
-    /// comes after the one that its root belongs to.
-    fn spread(&mut self) {
-        let moving = self.moving.take();
-        for (index, block) in self.blocks.iter().enumerate() {
-            if let Some((moved, twists)) = &moving
-                && *moved == index
-            {
-                for (&body, twist) in block.bodies.iter().zip(twists) {
-                    self.mechanism[body] = *twist;
-                }
-            } else if let Vertex::Body(root) = block.root {
-                let (twist, com) = (self.mechanism[root], self.structure.bodies[root].com);
-                for &body in &block.bodies {
-                    self.mechanism[body] = twist.moved(&(self.structure.bodies[body].com - com));
-                }
-            }
-        }
-    }
-
-    /// Marks the connections that break in the mechanisms of the largest utilisation.
-    fn mark_critical(&mut self) {
-        let largest = self.utilisation.lower;
-        for (lower, index, shares) in &self.candidates {
-            if largest > 0.0 && *lower >= largest * (1.0 - TIE) {
-                for (&link, share) in self.blocks[*index].links.iter().zip(shares) {
-                    if let Link::Connection(i) = link {
-                        self.connections[i].critical = *share > CRITICAL_SHARE;
-                    }
-                }
-            }
-        }
-    }
-
-    fn finish(mut self) -> Assessment {
-        if self.moving.is_some() {
-            self.spread();
-        }
-        let verdict = if self.collapsed {
-            self.utilisation = Bracket::exact(f64::INFINITY);
-            Verdict::WholeBodyUnstable
-        } else if self.utilisation.upper <= 1.0 {
-            Verdict::Stable
-        } else if self.utilisation.lower > 1.0 {
-            Verdict::InternallyUnstable
-        } else {
-            Verdict::Undecided
-        };
-        if !self.collapsed {
-            self.mark_critical();
-        }
-        let undecided_because = match verdict {
-            Verdict::Undecided => {
-                let Bracket { lower, upper } = self.utilisation;
-                let cause = self.undecided_because.take();
-                Some(cause.unwrap_or_else(|| format!("the bracket [{lower}, {upper}] straddles 1 within rounding")))
-            }
-            Verdict::Stable | Verdict::InternallyUnstable | Verdict::WholeBodyUnstable => None,
-        };
-        Assessment {
-            verdict,
-            utilisation: self.utilisation,
-            connections: self.connections,
-            contacts: self.contacts,
-            distribution: self.distribution,
-            mechanism: self.mechanism,
-            left_out: self.left_out,
-            undecided_because,
-            decided_by: self.decided_by,
-        }
-    }
 }

@@ -41,6 +41,19 @@ impl Problem<'_> {
         twists: Option<&[Twist]>,
         enough: f64,
     ) -> Option<(f64, Vec<f64>)> {
+        self.upper_bound_by(field, twists, |_, connector, wrench, error| {
+            demand_at_most(connector, wrench, error, enough)
+        })
+    }
+
+    /// As [`upper_bound`](Self::upper_bound), with upper bounds on the demands of connections, one
+    /// after the other, from elsewhere.
+    pub(super) fn upper_bound_by(
+        &self,
+        field: &[Wrench],
+        twists: Option<&[Twist]>,
+        mut demand: impl FnMut(Link, &Connector, &Wrench, &WrenchError) -> f64,
+    ) -> Option<(f64, Vec<f64>)> {
         let Self { structure, block, program, .. } = self;
         let mut charge = 0.0;
         let through = self.forces_through(field);
@@ -73,7 +86,7 @@ impl Problem<'_> {
                 }
                 Link::Connection(i) => {
                     let connector = &structure.connectors[structure.connections[i].connector];
-                    let upper = demand_at_most(connector, wrench, &rounding(wrench), enough);
+                    let upper = demand(link, connector, wrench, &rounding(wrench));
                     if !(upper < f64::INFINITY) {
                         return None;
                     }

@@ -15,6 +15,7 @@
 //! The only module that names `clarabel`. It knows nothing of robots, shapes,
 //! files or plans.
 
+mod answer;
 mod assess;
 mod assessment;
 mod balance;

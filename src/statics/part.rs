@@ -35,10 +35,11 @@ pub(super) enum Part {
 }
 
 impl Part {
-    /// Whether this is as much as `question` wants to know about the block.
-    pub(super) fn answers(&self, question: Question) -> bool {
+    /// Whether this is as much as `question` wants to know about the block when others
+    /// need `elsewhere` at least.
+    pub(super) fn answers(&self, question: Question, elsewhere: f64) -> bool {
         match self {
-            Self::Stands { utilisation, .. } => question.is_answered_by(utilisation),
+            Self::Stands { utilisation, .. } => utilisation.upper <= elsewhere || question.is_answered_by(utilisation),
             Self::Collapses { .. } => true,
         }
     }

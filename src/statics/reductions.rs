@@ -12,7 +12,9 @@ pub struct Reductions {
     /// Bodies that connections without any finite limit hold together are one body.
     pub rigid_links: bool,
     /// The structure is cut at its articulation bodies; otherwise what hangs together,
-    /// save over bridges in closed form, is one program.
+    /// save over bridges in closed form, is one program. Where the value is asked for, the
+    /// block that is expected to need most is solved first, and the others only until it is proved
+    /// that they need no more.
     pub blocks: bool,
     /// The wrench over a bridge follows from balance; otherwise a solver is asked.
     pub closed_form: bool,
@@ -21,7 +23,7 @@ pub struct Reductions {
     /// A block that is its own mirror image in a plane, body by body, has three balances
     /// per body.
     pub planar: bool,
-    /// Several blocks with cycles are solved at the same time. The answer is the
+    /// Several blocks with cycles, if they are large, are solved at the same time. The answer is the
     /// same to the last bit, whatever the number of threads.
     pub parallel: bool,
 }

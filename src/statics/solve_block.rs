@@ -110,12 +110,14 @@ const IDLE: [f64; 4] = [0.0, 1e-6, 1e-4, 1e-2];
 /// when bodies are fused into clusters.
 const FUSED: [f64; 3] = [1e-7, 1e-5, 1e-3];
 
-/// Assesses a block with cycles.
+/// Assesses a block with cycles. Where it is proved not to need more than `elsewhere`, which
+/// another part of the structure needs at least, no more is asked.
 pub(super) fn assess_block(
     structure: &Structure,
     block: &Block,
     loads: &[BodyLoad],
     question: Question,
+    elsewhere: f64,
     reductions: Reductions,
 ) -> Part {
     if block.bodies.iter().all(|&body| loads[body].is_zero()) {
@@ -123,7 +125,7 @@ pub(super) fn assess_block(
     }
     let program = Program::new(structure, block, loads, Purpose::Utilisation);
     let problem = Problem { structure, block, loads, program: &program };
-    let mut best = Best::new(block, reductions);
+    let mut best = Best::new(block, elsewhere, reductions);
     // Where supports face each other, begin with the attempt that bounds forces.
     let first = usize::from(faces_itself(&problem));
     let inset = ATTEMPTS[first].inset;
@@ -229,10 +231,12 @@ struct Best {
     restrictions: Vec<(Clusters, AtRest)>,
     /// What may be left out on the way.
     reductions: Reductions,
+    /// What another part of the structure needs at least.
+    elsewhere: f64,
 }
 
 impl Best {
-    fn new(block: &Block, reductions: Reductions) -> Self {
+    fn new(block: &Block, elsewhere: f64, reductions: Reductions) -> Self {
         Self {
             lower: 0.0,
             upper: f64::INFINITY,
@@ -243,11 +247,12 @@ impl Best {
             unproved: None,
             restrictions: Vec::new(),
             reductions,
+            elsewhere,
         }
     }
 
     fn answers(&self, question: Question) -> bool {
-        question.is_answered_by(&Bracket::new(self.lower, self.upper))
+        self.upper <= self.elsewhere || question.is_answered_by(&Bracket::new(self.lower, self.upper))
     }
 
     /// Runs the block's own method until what it proves answers the question, or
@@ -278,7 +283,9 @@ impl Best {
                 }
                 Question::ToGap(_) | Question::Full => {
                     let gap = question.gap();
-                    if estimate.error <= NARROW * gap && estimate.error <= WORTHWHILE * tried {
+                    if estimate.upper <= self.elsewhere && estimate.imbalance <= BALANCED {
+                        self.keep_upper(problem, &method.iterate().measured(program, problem.program), 0.0);
+                    } else if estimate.error <= NARROW * gap && estimate.error <= WORTHWHILE * tried {
                         tried = estimate.error;
                         let iterate = method.iterate().measured(program, problem.program);
                         self.keep_lower(problem, &problem.program.twists(&iterate.v));

@@ -82,7 +82,7 @@ fn left_out(named: &NamedStructure, explanation: &Explanation) -> Vec<String> {
     tell(
         usize::from(blocks.len() > 1),
         format!(
-            "{} blocks that meet in single bodies or at the ground: solved one by one, at the same time",
+            "{} blocks that meet in single bodies or at the ground: solved one by one, each only until it is proved to need no more than another",
             blocks.len()
         ),
     );

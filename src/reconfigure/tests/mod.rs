@@ -1,8 +1,10 @@
 //! Laws of actions, and the planner against unlike methods.
 
+mod agreement;
 mod heuristics;
 mod motions;
-mod planning;
+mod outcomes;
+mod reports;
 mod tampering;
 
 use std::sync::Arc;
@@ -16,7 +18,10 @@ use crate::spatial::Vec3;
 
 use super::layout::Layout;
 use super::moves::{Ability, Move, fitting};
+use super::plan::{Outcome, Plan, Report};
 use super::problem::cells;
+use super::replay::replay;
+use super::solve::{Options, solve};
 
 /// Everything that a free cube of the catalogue can do.
 pub const CUBE: Ability = Ability { slide: true, pivot: true, hinge: true };
@@ -76,4 +81,28 @@ pub fn moves_of(layout: &Layout) -> Vec<Move> {
 /// The layout of cubes in these cells.
 pub fn layout_of(filled: &[Cell]) -> Layout {
     cells(&cubes(filled, 0))
+}
+
+/// Plans, and replays every plan that comes back.
+pub fn plan(start: &Configuration, goal: &Goal, options: &Options) -> Report {
+    let report = solve(start, goal, options, &mut |_| {}).unwrap();
+    for plan in report.plan.iter().chain(&report.alternatives) {
+        let required = report.required.unwrap_or(f64::NEG_INFINITY);
+        let replayed = replay(start, goal, plan, required).unwrap();
+        if !options.ignore_stability {
+            assert_eq!(replayed.failures, [], "{plan:#?}");
+        }
+    }
+    report
+}
+
+pub fn solved(report: &Report) -> &Plan {
+    assert_eq!(report.outcome, Outcome::Solved, "{report:#?}");
+    report.plan.as_ref().unwrap()
+}
+
+/// Four cubes, the first one held: a tower becomes a row.
+pub fn tower_to_row() -> (Configuration, Goal) {
+    let start = cubes(&[[0, 0, 0], [0, 0, 1], [0, 0, 2], [1, 0, 0]], 1);
+    (start, goal(cubes(&[[0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 0, 0]], 1)))
 }

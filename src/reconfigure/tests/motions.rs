@@ -164,3 +164,9 @@ fn a_pivot_lands_on_the_face_that_it_comes_down_on() {
     assert_eq!(quarter.landing(&layout)[0].cells(), [[1, 0, 0], [1, 0, 1]]);
     assert_eq!(half.landing(&layout)[0].cells(), [[0, 0, 0], [1, 0, 0]]);
 }
+
+#[test]
+fn bonds_and_connections_name_the_same_faces() {
+    let state = cubes(&[[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 0, 1]], 0);
+    assert_eq!(bonds(&state), cells(&state).touching());
+}

@@ -8,8 +8,7 @@ use crate::reconfigure::replay::{Failure, Fault, replay};
 use crate::reconfigure::solve::Options;
 use crate::robot::{Cell, Configuration, Goal};
 
-use super::planning::{plan, solved, tower_to_row};
-use super::{cubes, goal};
+use super::{cubes, goal, plan, solved, tower_to_row};
 
 /// A verified plan of [`tower_to_row`].
 fn sample_plan() -> (Configuration, Goal, Plan) {

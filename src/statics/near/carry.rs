@@ -11,6 +11,7 @@ use super::super::loads::BodyLoad;
 use super::super::part::Part;
 use super::super::program::Program;
 use super::super::structure::Structure;
+use super::field::face;
 use super::ladder::Ladder;
 use super::memory::{Held, Known, Memory, idle_links};
 
@@ -88,6 +89,17 @@ impl<'s> Carried<'s> {
         }
     }
 
+    /// Takes note of the forces at the points of a block's faces, which may be unknown.
+    fn remember(&mut self, block: &Block, mut points: &[Vec3]) {
+        for &link in &block.links {
+            if let Some(face) = face(self.structure, link) {
+                let own = points.split_off(..face.points.len().min(points.len())).unwrap_or_default();
+                let (axes, slot) = (LinkFrame::new(self.structure, link).axes, self.slot(link));
+                self.links[slot].points = own.iter().map(|force| axes * force).collect();
+            }
+        }
+    }
+
     /// The motion of a block's root and where it is.
     fn root(&self, block: &Block, twist: impl Fn(usize) -> Twist) -> (Twist, Vec3) {
         match block.root {
@@ -153,7 +165,14 @@ impl Knowledge for Carried<'_> {
         };
         let field = block.links.iter().zip(&program.frames).map(in_frame).collect();
         let problem = Problem { structure, block, loads, program: &program };
-        Some(Ladder::new(problem, self.question).climb(self.motion(block), field, self.falls))
+        let known = |link: Link| {
+            let axes = LinkFrame::new(structure, link).axes;
+            self.links[self.slot(link)].points.iter().map(|force| axes.tr_mul(force)).collect()
+        };
+        let climbed = Ladder::new(problem, self.question).climb(self.motion(block), field, known, self.falls);
+        // A solver's wrenches are shared in another way.
+        self.remember(block, if climbed.part.answers(self.question, 0.0) { &climbed.points } else { &[] });
+        Some(climbed.part)
     }
 
     fn note(&mut self, block: &Block, part: &Part) {

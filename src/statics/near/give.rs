@@ -14,18 +14,26 @@ use super::super::balance::residuals;
 use super::super::bracket::Problem;
 use super::super::maps::relative;
 use super::super::network::{Network, flexibility_root};
+use super::super::program::local_body;
+use super::field::{Field, face};
 use super::room::Rooms;
 
-/// Rounds of correction; each is as accurate as the factorisation.
-const ROUNDS: usize = 3;
-
 /// Imbalance, relative to what flows through a body, that needs no correction.
-const BALANCED: f64 = 1e-13;
+const BALANCED: f64 = 1e-12;
+
+/// Rounds of correction after a change; each is as accurate as the factorisation.
+const REFINEMENTS: usize = 2;
 
 /// Factored stiffness of a block.
 pub(super) struct Give {
     network: Network<6>,
     rooms: Rooms,
+}
+
+/// A change of the field, and the twists that it comes from.
+pub(super) struct Change {
+    pub field: Field,
+    pub twists: Vec<Twist>,
 }
 
 impl Give {
@@ -41,62 +49,75 @@ impl Give {
         self.rooms = rooms;
     }
 
-    /// Moves `field` towards the middles of the cones by the share `centring` of
-    /// what the barrier asks for, and to balance. Returns the twists that the
-    /// change came from: what resists them is least near its limit, so where the
-    /// loads are too large, this is the way in which they win.
-    pub(super) fn balance(&self, problem: &Problem<'_>, field: &mut [Wrench], centring: f64) -> Vec<Twist> {
-        for (wrench, centre) in field.iter_mut().zip(&self.rooms.centres) {
-            *wrench += *centre * centring;
+    /// The change that makes `field` balance and is least but for `centring` times the step
+    /// towards the middles of the cones. What resists its twists is least near its limit, so
+    /// where the loads are too large, they are the way in which the loads win.
+    pub(super) fn balancing(&self, problem: &Problem<'_>, field: &Field, centring: f64) -> Change {
+        let mut lacking = lacking(problem, &field.wrenches);
+        for (lacking, push) in lacking.iter_mut().zip(pushes(problem, &self.rooms.centres.wrenches)) {
+            *lacking += push * centring;
         }
-        let mut total = vec![0.0; 6 * problem.block.bodies.len()];
-        for _ in 0..ROUNDS {
-            let lacking = lacking(problem, field);
+        let mut change = self.answer(problem, &lacking);
+        change.field.add(&self.rooms.centres, centring);
+        change
+    }
+
+    /// The twists of the step towards the middles of the cones that leaves the balance as it
+    /// is. Near the middle of the whole, every link admits them with something to spare.
+    pub(super) fn centring(&self, problem: &Problem<'_>) -> Vec<Twist> {
+        let rows = rows(problem, &pushes(problem, &self.rooms.centres.wrenches));
+        twists(problem, &self.network.solve(&rows, |_, _| {}))
+    }
+
+    /// Corrects what rounding left of the imbalance of `field`; whether it balances then.
+    pub(super) fn refine(&self, problem: &Problem<'_>, field: &mut Field) -> bool {
+        for _ in 0..REFINEMENTS {
+            let lacking = lacking(problem, &field.wrenches);
             if imbalance(problem, &lacking) <= BALANCED {
-                break;
+                return true;
             }
-            let wanted = rows(problem, &lacking);
-            let mut passed = vec![None; field.len()];
-            let v = self.network.solve(&wanted, |link, wrench| passed[link] = Some(wrench));
-            if !v.iter().all(|x| x.is_finite()) {
-                break;
-            }
-            for (l, wrench) in field.iter_mut().enumerate() {
-                let change = passed[l].unwrap_or_else(|| self.resistance(problem, l, &v));
-                *wrench += Wrench::new(-change.fixed_rows::<3>(0), -change.fixed_rows::<3>(3));
-            }
-            for (sum, v) in total.iter_mut().zip(&v) {
-                *sum += v;
-            }
+            field.add(&self.answer(problem, &lacking).field, 1.0);
         }
-        twists(problem, &total)
+        balances(problem, &lacking(problem, &field.wrenches))
     }
 
-    /// The wrench with which a link resists scaled twists.
-    fn resistance(&self, problem: &Problem<'_>, link: usize, v: &[f64]) -> Vector6<f64> {
-        self.rooms.metrics[link] * Vector6::from(relative(&problem.program.sides[link], v))
+    /// The least change of the field that holds `wrenches` on the bodies.
+    fn answer(&self, problem: &Problem<'_>, wrenches: &[Wrench]) -> Change {
+        let Problem { structure, block, program, .. } = *problem;
+        let links = block.links.len();
+        let mut passed = vec![None; links];
+        let v = self.network.solve(&rows(problem, wrenches), |link, wrench| passed[link] = Some(wrench));
+        let mut field =
+            Field { wrenches: Vec::with_capacity(links), points: Vec::with_capacity(self.rooms.points.len()) };
+        let mut points = self.rooms.points.iter();
+        for (l, &link) in block.links.iter().enumerate() {
+            let change = passed[l].unwrap_or_else(|| {
+                let [vx, vy, vz, wx, wy, wz] = relative(&program.sides[l], &v);
+                if let Some(face) = face(structure, link) {
+                    let apart = Twist::new(Vec3::new(vx, vy, vz), Vec3::new(wx, wy, wz));
+                    for (p, metric) in face.points.iter().zip(&mut points) {
+                        field.points.push(-(metric * apart.at(&Vec3::new(p[0], p[1], 0.0))));
+                    }
+                }
+                self.rooms.metrics[l] * Vector6::new(vx, vy, vz, wx, wy, wz)
+            });
+            field.wrenches.push(Wrench::new(-change.fixed_rows::<3>(0), -change.fixed_rows::<3>(3)));
+        }
+        Change { field, twists: twists(problem, &v) }
     }
+}
 
-    /// The twist field nearest to `field`, in the metric of this stiffness, in
-    /// which the `locked` links hardly move.
-    pub(super) fn lock(&self, problem: &Problem<'_>, field: &[Twist], locked: &[bool]) -> Vec<Twist> {
-        let factors = problem.program.row_factor.chunks_exact(6);
-        let scaled = |(twist, factor): (&Twist, &[f64])| {
-            let (v, w) = (&twist.linear, &twist.angular);
-            [v.x / factor[0], v.y / factor[1], v.z / factor[2], w.x / factor[3], w.y / factor[4], w.z / factor[5]]
-        };
-        let v: Vec<f64> = field.iter().zip(factors).flat_map(scaled).collect();
-        let mut pull = vec![0.0; v.len()];
-        for l in (0..locked.len()).filter(|&l| locked[l]) {
-            let resistance = (-self.resistance(problem, l, &v)).into();
-            for side in problem.program.sides[l].iter().flatten() {
-                side.push(&resistance, &mut pull);
+/// What the wrenches of links push the block's bodies with.
+fn pushes(problem: &Problem<'_>, wrenches: &[Wrench]) -> Vec<Wrench> {
+    let mut pushed = vec![Wrench::ZERO; problem.block.bodies.len()];
+    for (frame, wrench) in problem.program.frames.iter().zip(wrenches) {
+        for (side, sign) in frame.sides() {
+            if let Some(i) = local_body(problem.block, side) {
+                pushed[i] += frame.to_body(wrench, &problem.program.coms[i]) * sign;
             }
         }
-        let change = twists(problem, &self.network.solve(&pull, |_, _| {}));
-        let add = |(a, b): (&Twist, &Twist)| Twist::new(a.linear + b.linear, a.angular + b.angular);
-        field.iter().zip(&change).map(add).collect()
     }
+    pushed
 }
 
 /// What every body of the block lacks for balance.
@@ -133,7 +154,7 @@ fn twists(problem: &Problem<'_>, v: &[f64]) -> Vec<Twist> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::opening::{inadmissible, open};
+    use super::super::opening::Opening;
     use super::*;
     use crate::spatial::Pose;
     use crate::statics::blocks::{Block, cut};
@@ -173,47 +194,57 @@ mod tests {
         check(&Problem { structure: &structure, block, loads: &loads, program: &program });
     }
 
+    /// The field of nothing at all, at the rated strengths.
+    fn idle(problem: &Problem<'_>) -> Field {
+        Field::new(problem, vec![Wrench::ZERO; problem.block.links.len()], 1.0, |_| Vec::new())
+    }
+
     #[test]
     fn fields_balance_afterwards_with_or_without_centring() {
         with_problem(|problem| {
+            let mut field = idle(problem);
+            let mut give = Give::new(problem, Rooms::new(problem, &field, 1.0));
             for centring in [0.0, 0.7] {
-                let mut field = vec![Wrench::ZERO; problem.block.links.len()];
-                let mut give = Give::new(problem, Rooms::new(problem, &field, 1.0));
-                give.balance(problem, &mut field, centring);
-                assert!(balances(problem, &lacking(problem, &field)));
+                let mut moved = field.clone();
+                moved.add(&give.balancing(problem, &field, centring).field, 1.0);
+                assert!(give.refine(problem, &mut moved));
+                assert!(balances(problem, &lacking(problem, &moved.wrenches)));
                 // Another room, the same pattern.
-                give.renew(Rooms::new(problem, &field, 0.5));
-                field[2] = Wrench::ZERO;
-                give.balance(problem, &mut field, centring);
-                assert!(balances(problem, &lacking(problem, &field)));
+                give.renew(Rooms::new(problem, &moved, 0.5));
+                moved.wrenches[2] = Wrench::ZERO;
+                field = moved;
             }
+        });
+    }
+
+    #[test]
+    fn near_the_middle_every_link_opens() {
+        with_problem(|problem| {
+            let mut field = idle(problem);
+            let mut give = Give::new(problem, Rooms::new(problem, &field, 3.0));
+            for _ in 0..10 {
+                field.add(&give.balancing(problem, &field, 0.7).field, 1.0);
+                give.renew(Rooms::new(problem, &field, 3.0));
+            }
+            let opening = Opening::new(problem, give.centring(problem));
+            // Two cubes go sideways: links between them and the others slip.
+            let slide = Twist::new(Vec3::x(), Vec3::zeros());
+            let mut twists = [Twist::ZERO, slide, Twist::ZERO, slide];
+            assert!(problem.lower_bound(&twists).is_none());
+            assert!(opening.open(&mut twists));
+            let opened = twists;
+            assert!(opening.open(&mut twists));
+            assert_eq!(twists, opened, "every link admits them by now");
         });
     }
 
     #[test]
     fn the_loads_do_work_in_the_way_they_would_win() {
         with_problem(|problem| {
-            let mut field = vec![Wrench::ZERO; problem.block.links.len()];
-            let way = Give::new(problem, Rooms::new(problem, &field, 1.0)).balance(problem, &mut field, 0.0);
+            let field = idle(problem);
+            let way = Give::new(problem, Rooms::new(problem, &field, 1.0)).balancing(problem, &field, 0.0).twists;
             let power: f64 = way.iter().zip(problem.loads).map(|(twist, load)| twist.power(&load.wrench)).sum();
             assert!(power > 0.0);
-        });
-    }
-
-    #[test]
-    fn locked_links_hardly_move_and_opening_does_the_rest() {
-        with_problem(|problem| {
-            // Two cubes go sideways: links between them and the others slip.
-            let slide = Twist::new(Vec3::x(), Vec3::zeros());
-            let twists = [Twist::ZERO, slide, Twist::ZERO, slide];
-            let locked = inadmissible(problem, &twists);
-            assert_eq!(locked, [false, false, false, false, false, true]);
-            let field = vec![Wrench::ZERO; locked.len()];
-            let give = Give::new(problem, Rooms::locking(problem, &field, 1.0, |l| locked[l]));
-            let mut twists = give.lock(problem, &twists, &locked);
-            assert!(twists[1].linear.norm() < 1e-3, "{twists:?}");
-            assert!(open(problem, &mut twists));
-            assert!(!inadmissible(problem, &twists).contains(&true));
         });
     }
 }

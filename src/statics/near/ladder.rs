@@ -1,14 +1,18 @@
 //! The bounds on one block that carried fields prove, from the cheapest on, until
 //! they answer the question.
 
-use crate::spatial::{Twist, Wrench};
+use crate::spatial::{Twist, Vec3, Wrench};
 
 use super::super::assessment::{Bracket, Question};
+use super::super::blocks::Link;
 use super::super::bracket::Problem;
+use super::super::connector::Connector;
+use super::super::demand::{WrenchError, demand_at_most};
 use super::super::part::Part;
 use super::super::rung::Rung;
+use super::field::{Field, face};
 use super::give::{Give, balances, lacking};
-use super::opening::{inadmissible, open};
+use super::opening::Opening;
 use super::put_back::put_back;
 use super::room::Rooms;
 
@@ -34,10 +38,17 @@ pub(super) struct Ladder<'p> {
     problem: Problem<'p>,
     question: Question,
     bracket: Bracket,
-    wrenches: Vec<Wrench>,
+    field: Field,
     demands: Vec<f64>,
     mechanism: Vec<Twist>,
     shares: Vec<f64>,
+}
+
+/// What carried fields say about a block.
+pub(super) struct Climbed {
+    pub part: Part,
+    /// Forces at the points of its faces, one face after the other.
+    pub points: Vec<Vec3>,
 }
 
 impl<'p> Ladder<'p> {
@@ -47,71 +58,68 @@ impl<'p> Ladder<'p> {
             problem,
             question,
             bracket: Bracket::new(0.0, f64::INFINITY),
-            wrenches: vec![Wrench::ZERO; links],
+            field: Field { wrenches: vec![Wrench::ZERO; links], points: Vec::new() },
             demands: vec![0.0; links],
             mechanism: vec![Twist::ZERO; bodies],
             shares: vec![0.0; links],
         }
     }
 
-    /// Tries `twists`, if any, and `field`; first the one that is more likely to answer.
-    pub(super) fn climb(mut self, twists: Option<Vec<Twist>>, field: Vec<Wrench>, falls: bool) -> Part {
-        for motion in [falls, !falls] {
-            if self.answered() {
-                break;
-            }
-            match (&twists, motion) {
-                (Some(twists), true) => self.try_motion(twists, &field),
-                (None, true) => {}
-                (_, false) => self.try_forces(field.clone()),
-            }
+    /// Tries `twists`, if any, and `wrenches`; where the neighbour `falls`, the twists first.
+    /// `known` has what the points of a face carried.
+    pub(super) fn climb(
+        mut self,
+        twists: Option<Vec<Twist>>,
+        wrenches: Vec<Wrench>,
+        known: impl Fn(Link) -> Vec<Vec3>,
+        falls: bool,
+    ) -> Climbed {
+        let twists = twists.unwrap_or_default();
+        if falls {
+            self.try_motion(&twists);
+        }
+        let balanced = || balances(&self.problem, &lacking(&self.problem, &wrenches));
+        if !self.answered() && balanced() {
+            self.keep_carried(&wrenches);
+        }
+        if let (false, Some(level)) = (self.answered(), level(self.question)) {
+            let field = Field::new(&self.problem, wrenches, level, known);
+            self.repair(field, level, &twists);
+        } else if !falls && !self.answered() {
+            self.try_motion(&twists);
         }
         // Each end is proved up to the tolerance on balance; where they cross by
         // that, the truth lies between them.
         if self.bracket.lower > self.bracket.upper {
             std::mem::swap(&mut self.bracket.lower, &mut self.bracket.upper);
         }
-        Part::Stands {
+        let part = Part::Stands {
             utilisation: self.bracket,
-            wrenches: self.wrenches,
+            wrenches: self.field.wrenches,
             demands: self.demands,
             mechanism: self.mechanism,
             shares: self.shares,
             undecided_because: None,
             decided_by: Rung::CarriedOver,
             unproved: None,
-        }
+        };
+        Climbed { part, points: self.field.points }
     }
 
     fn answered(&self) -> bool {
         self.question.is_answered_by(&self.bracket)
     }
 
-    /// Lower bounds: the carried twists as they are or a little opened, then with
-    /// the links locked that do not admit them.
-    fn try_motion(&mut self, twists: &[Twist], field: &[Wrench]) {
-        self.keep_lower(twists.to_vec());
-        if let (false, Some(level)) = (self.answered(), level(self.question)) {
-            let locked = inadmissible(&self.problem, twists);
-            if locked.contains(&true) {
-                let rooms = Rooms::locking(&self.problem, field, level, |l| locked[l]);
-                let give = Give::new(&self.problem, rooms);
-                self.keep_lower(give.lock(&self.problem, twists, &locked));
-            }
+    /// Lower bounds: the carried twists as they are or a little opened by breathing.
+    fn try_motion(&mut self, twists: &[Twist]) {
+        if !twists.is_empty() {
+            self.keep_lower(&Opening::breathing(&self.problem), twists.to_vec());
         }
     }
 
-    /// Upper bounds: the carried wrenches as they are, if they balance, then
-    /// balanced and put back into their cones in turns.
-    fn try_forces(&mut self, mut field: Vec<Wrench>) {
-        if balances(&self.problem, &lacking(&self.problem, &field)) {
-            self.keep_upper(&field);
-            if self.answered() {
-                return;
-            }
-            self.put_back(&mut field);
-        }
-        let Some(level) = level(self.question) else { return };
+    /// Upper bounds from the field balanced and put back into its cones in turns, lower
+    /// bounds from the way in which the loads win where that is not enough.
+    fn repair(&mut self, mut field: Field, level: f64, twists: &[Twist]) {
         let mut give: Option<Give> = None;
         for round in 0..ROUNDS {
             let rooms = Rooms::new(&self.problem, &field, level);
@@ -122,29 +130,35 @@ impl<'p> Ladder<'p> {
                 }
                 None => give.insert(Give::new(&self.problem, rooms)),
             };
-            let way = give.balance(&self.problem, &mut field, CENTRING[round.min(1)]);
-            self.keep_upper(&field);
-            if !self.answered() {
-                self.keep_lower(way);
+            let share = CENTRING[round.min(1)];
+            let balancing = give.balancing(&self.problem, &field, share);
+            field.add(&balancing.field, 1.0);
+            if give.refine(&self.problem, &mut field) {
+                self.keep_upper(&field, level);
             }
             if self.answered() {
                 return;
             }
-            self.put_back(&mut field);
-        }
-    }
-
-    fn put_back(&self, field: &mut [Wrench]) {
-        let Some(level) = level(self.question) else { return };
-        for (&link, wrench) in self.problem.block.links.iter().zip(field) {
-            put_back(self.problem.structure, link, wrench, level);
+            let centring = give.centring(&self.problem);
+            let less =
+                |(v, c): (&Twist, &Twist)| Twist::new(v.linear - c.linear * share, v.angular - c.angular * share);
+            let way = balancing.twists.iter().zip(&centring).map(less).collect();
+            let opening = Opening::new(&self.problem, centring);
+            self.keep_lower(&opening, way);
+            if round == 0 && !twists.is_empty() && !self.answered() {
+                self.keep_lower(&opening, twists.to_vec());
+            }
+            if self.answered() {
+                return;
+            }
+            put_back(&self.problem, &mut field, level);
         }
     }
 
     /// Opens `twists` where that is needed and keeps what they prove, scaled to
     /// unit dissipation.
-    fn keep_lower(&mut self, mut twists: Vec<Twist>) {
-        if !open(&self.problem, &mut twists) {
+    fn keep_lower(&mut self, opening: &Opening<'_>, mut twists: Vec<Twist>) {
+        if !opening.open(&mut twists) {
             return;
         }
         let Some((lower, shares)) = self.problem.lower_bound(&twists) else { return };
@@ -158,13 +172,36 @@ impl<'p> Ladder<'p> {
         }
     }
 
-    fn keep_upper(&mut self, field: &[Wrench]) {
+    fn mechanism(&self) -> Option<&[Twist]> {
+        (self.bracket.lower > 0.0).then_some(&self.mechanism[..])
+    }
+
+    /// Keeps what the carried wrenches prove as they are.
+    fn keep_carried(&mut self, wrenches: &[Wrench]) {
         let enough = level(self.question).unwrap_or(0.0);
-        let mechanism = (self.bracket.lower > 0.0).then_some(&self.mechanism[..]);
-        let Some((upper, demands)) = self.problem.upper_bound(field, mechanism, enough) else { return };
+        if let Some((upper, demands)) = self.problem.upper_bound(wrenches, self.mechanism(), enough) {
+            self.bracket.upper = upper;
+            self.field.wrenches = wrenches.to_vec();
+            self.demands = demands;
+        }
+    }
+
+    /// Keeps what a balanced field proves, of faces by their points.
+    fn keep_upper(&mut self, field: &Field, level: f64) {
+        let structure = self.problem.structure;
+        let mut points = &field.points[..];
+        let demand = |link: Link, connector: &Connector, wrench: &Wrench, error: &WrenchError| {
+            let Some(face) = face(structure, link) else { return demand_at_most(connector, wrench, error, level) };
+            let (own, others) = points.split_at(face.points.len());
+            points = others;
+            face.at_most(wrench, own, level).unwrap_or_else(|| demand_at_most(connector, wrench, error, level))
+        };
+        let Some((upper, demands)) = self.problem.upper_bound_by(&field.wrenches, self.mechanism(), demand) else {
+            return;
+        };
         if upper < self.bracket.upper {
             self.bracket.upper = upper;
-            self.wrenches = field.to_vec();
+            self.field = field.clone();
             self.demands = demands;
         }
     }

@@ -33,7 +33,7 @@ pub(super) struct Known {
 }
 
 /// A connection or contact and what it carried.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Held {
     pub ends: [Anchor; 2],
     /// The connector's index; `None` for a contact.
@@ -41,6 +41,8 @@ pub(super) struct Held {
     pub at: Vec3,
     /// On the child or the contact's body, about `at`, in W.
     pub wrench: Wrench,
+    /// Of a face, what its points carried, in W; empty where that is not known.
+    pub points: Vec<Vec3>,
 }
 
 /// Why a structure could not be assessed as a neighbour.
@@ -92,12 +94,14 @@ pub(super) fn idle_links(structure: &Structure) -> Vec<Held> {
         connector: Some(connection.connector),
         at: connection.frame.translation.vector,
         wrench: Wrench::ZERO,
+        points: Vec::new(),
     });
     let contacts = structure.contacts.iter().map(|contact| Held {
         ends: [contact.against, Anchor::Body(contact.body)],
         connector: None,
         at: contact.position,
         wrench: Wrench::ZERO,
+        points: Vec::new(),
     });
     connections.chain(contacts).collect()
 }
@@ -154,6 +158,7 @@ impl Memory {
             });
             if let Some(i) = found {
                 link.wrench = self.links[i].wrench;
+                link.points.clone_from(&self.links[i].points);
                 next = i + 1;
             }
         }

@@ -12,13 +12,15 @@
 //!   its neighbours.
 //! - *Lower bound* (`opening`). Links that are gone only free the motion. What a
 //!   new link does not admit is repaired by the least share of a field that opens
-//!   every link, expansion from a point behind the supports; or, before that, the
-//!   link is locked and all others give way as far as their cones have room.
+//!   every link: expansion from a point behind the supports, or the twists that push
+//!   all wrenches towards the middles of their cones.
 //! - *Upper bound* (`give`, `room`). What a link that is gone leaves unbalanced is
 //!   spread over all others by the change that is least in the metric of the
 //!   cones' barriers at the carried field, strengths at the threshold: one
 //!   factorisation of 6 x 6 blocks on the body graph. Where that overloads a link,
 //!   its wrench is put back into its cone (`put_back`) and the next round begins there.
+//!   Faces are carried by the forces at their points (`field`), which prove what the faces
+//!   hold without an optimisation of their own.
 //! - The same factorisation yields twists: if the loads win, the way in which they do.
 //!
 //! Wrong or useless fields cost tightness, never soundness: `bracket` evaluates
@@ -28,6 +30,7 @@
 //! Knows nothing of how a caller finds neighbours, and keeps no state of its own.
 
 mod carry;
+mod field;
 mod give;
 mod ladder;
 mod memory;

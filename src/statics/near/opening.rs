@@ -23,9 +23,6 @@ const DEPTH: f64 = 2.0;
 /// the rounding that the bracket subtracts.
 const LEAST: f64 = 1e-12;
 
-/// Lack of reserve, relative to the fastest body, from which a link is worth locking.
-const WORTH_LOCKING: f64 = 1e-6;
-
 /// Excess of the share over what the formula asks for: rounding.
 const EXCESS: f64 = 1.0 + 1e-6;
 
@@ -53,35 +50,46 @@ fn fastest(twists: &[Twist]) -> f64 {
     twists.iter().map(|twist| twist.linear.norm()).fold(0.0, f64::max)
 }
 
-/// The links of the block that do not admit `twists` by more than rounding.
-pub(super) fn inadmissible(problem: &Problem<'_>, twists: &[Twist]) -> Vec<bool> {
-    let least = -WORTH_LOCKING * fastest(twists);
-    reserves(problem, twists).iter().map(|reserve| *reserve < least).collect()
+/// The least shares of fields that open links which make every link admit some twists.
+pub(super) struct Opening<'p> {
+    problem: Problem<'p>,
+    by: Vec<Twist>,
+    gains: Vec<f64>,
 }
 
-/// Adds to `twists` the least share of breathing that makes every link admit
-/// them; whether there is one.
-pub(super) fn open(problem: &Problem<'_>, twists: &mut [Twist]) -> bool {
-    let wanted = LEAST * fastest(twists);
-    let reserves = self::reserves(problem, twists);
-    if reserves.iter().all(|reserve| *reserve >= wanted) {
-        return true;
+impl<'p> Opening<'p> {
+    /// By a share of `by`.
+    pub(super) fn new(problem: &Problem<'p>, by: Vec<Twist>) -> Self {
+        Self { problem: *problem, gains: reserves(problem, &by), by }
     }
-    let breathing = breathing(problem);
-    let mut share = 0.0_f64;
-    for (reserve, gain) in reserves.iter().zip(self::reserves(problem, &breathing)) {
-        let lacking = wanted - reserve;
-        if lacking > 0.0 {
-            if !(gain > 0.0) {
-                return false;
+
+    /// By a share of breathing.
+    pub(super) fn breathing(problem: &Problem<'p>) -> Self {
+        Self::new(problem, breathing(problem))
+    }
+
+    /// Adds the least share to `twists` that makes every link admit them; whether there is one.
+    pub(super) fn open(&self, twists: &mut [Twist]) -> bool {
+        let wanted = LEAST * fastest(twists);
+        let mut share = 0.0_f64;
+        for (reserve, gain) in reserves(&self.problem, twists).iter().zip(&self.gains) {
+            let lacking = wanted - reserve;
+            if lacking > 0.0 {
+                if !(*gain > 0.0) {
+                    return false;
+                }
+                share = share.max(lacking / gain);
             }
-            share = share.max(lacking / gain);
         }
+        if share > 0.0 {
+            share *= EXCESS;
+            for (twist, more) in twists.iter_mut().zip(&self.by) {
+                twist.linear += more.linear * share;
+                twist.angular += more.angular * share;
+            }
+        }
+        true
     }
-    for (twist, more) in twists.iter_mut().zip(&breathing) {
-        twist.linear += more.linear * (share * EXCESS);
-    }
-    true
 }
 
 /// How much more every link opens than it slips, in m/s; infinite for links that

@@ -3,13 +3,12 @@
 //! The Hessian of a cone's logarithmic barrier at a wrench is the inverse of
 //! `C C'`, with one column of C per variable of the cone: what is near its limit
 //! moves least. Only a metric, nothing is proved with it, so a wrench outside its
-//! cone is taken to be just inside, and a face's points share its wrench as they
-//! would if they were springs.
+//! cone is taken to be just inside. A face has a cone at every point.
 //!
 //! Source: Nesterov and Todd (1997); the quadratic representation of a
 //! second-order cone, as in `second_order`.
 
-use nalgebra::{Matrix6, Vector6};
+use nalgebra::{Matrix3, Matrix6, Vector6};
 
 use crate::spatial::{Vec3, Wrench};
 
@@ -18,13 +17,13 @@ use super::super::bracket::Problem;
 use super::super::connector::{Connector, Model};
 use super::super::program::local_body;
 use super::super::second_order::norm;
-use super::super::spread::Spread;
+use super::field::{Field, face};
 
 /// Depth inside the cone that every wrench is taken to have at least, relative to
 /// what presses or holds there.
 const DEPTH: f64 = 1e-3;
 
-/// Room of what is not limited, and of a locked link, relative to the typical force.
+/// Room of what is not limited, relative to the typical force.
 const UNLIMITED: f64 = 1e3;
 
 /// Room of all links of a block at one field.
@@ -32,42 +31,49 @@ const UNLIMITED: f64 = 1e3;
 pub(super) struct Rooms {
     /// `C C'` of each link, on wrenches in its frame.
     pub metrics: Vec<Matrix6<f64>>,
-    /// Per link: the step towards the middle of its cone that the barrier asks for.
-    pub centres: Vec<Wrench>,
+    /// The same of each point of the faces, on its force.
+    pub points: Vec<Matrix3<f64>>,
+    /// The step towards the middles of the cones that the barrier asks for.
+    pub centres: Field,
 }
 
 impl Rooms {
     /// At `field`, with strengths `level` times the rated ones.
-    pub(super) fn new(problem: &Problem<'_>, field: &[Wrench], level: f64) -> Self {
-        Self::locking(problem, field, level, |_| false)
-    }
-
-    /// As `new`, but without resistance of some links to changes of their wrench:
-    /// for twists, whose stiffness this is, they are locked.
-    pub(super) fn locking(problem: &Problem<'_>, field: &[Wrench], level: f64, locked: impl Fn(usize) -> bool) -> Self {
+    pub(super) fn new(problem: &Problem<'_>, field: &Field, level: f64) -> Self {
         let Problem { structure, block, program, .. } = *problem;
         let mut rooms = Self::default();
-        for (l, (&link, wrench)) in block.links.iter().zip(field).enumerate() {
+        let mut points = field.points.iter();
+        for (l, (&link, wrench)) in block.links.iter().zip(&field.wrenches).enumerate() {
             let force = program.scales.link[l];
-            let sides = program.frames[l].sides().into_iter().filter_map(|(side, _)| local_body(block, side));
-            let lever = sides.map(|i| program.scales.lever[i]).fold(0.0, f64::max);
             rooms.metrics.push(Matrix6::zeros());
             let centre = match link {
-                Link::Contact(_) if locked(l) => rooms.lock(3, force, lever),
                 Link::Contact(i) => {
-                    let friction = structure.contacts[i].friction;
-                    rooms.add_point(&wrench.force, friction, &Vec3::zeros(), DEPTH * force)
+                    let columns = point_columns(&wrench.force, structure.contacts[i].friction, DEPTH * force);
+                    for column in &columns {
+                        rooms.push(&Wrench::new(*column, Vec3::zeros()));
+                    }
+                    Wrench::new(columns[0], Vec3::zeros())
                 }
                 Link::Connection(i) => {
                     let connector = &structure.connectors[structure.connections[i].connector];
-                    if locked(l) {
-                        rooms.lock(6, force + level * connector.strength, lever)
-                    } else {
-                        rooms.add_connection(connector, wrench, level, force, lever)
+                    match (&connector.model, face(structure, link)) {
+                        (Model::Patch { friction, .. }, Some(face)) => {
+                            let mut centre = Wrench::ZERO;
+                            for (p, force) in face.points.iter().zip(&mut points) {
+                                centre += rooms.add_point(force, *friction, p, DEPTH * face.preload(level));
+                            }
+                            centre
+                        }
+                        _ => {
+                            let sides = program.frames[l].sides().into_iter();
+                            let bodies = sides.filter_map(|(side, _)| local_body(block, side));
+                            let lever = bodies.map(|i| program.scales.lever[i]).fold(0.0, f64::max);
+                            rooms.add_connection(connector, wrench, level, force, lever)
+                        }
                     }
                 }
             };
-            rooms.centres.push(centre);
+            rooms.centres.wrenches.push(centre);
         }
         rooms
     }
@@ -79,13 +85,6 @@ impl Rooms {
         if let Some(metric) = self.metrics.last_mut() {
             metric.ger(1.0, &column, &column, 1.0);
         }
-    }
-
-    fn lock(&mut self, components: usize, force: f64, lever: f64) -> Wrench {
-        for k in 0..components {
-            self.push(&component(k, UNLIMITED * force * if k < 3 { 1.0 } else { lever }));
-        }
-        Wrench::ZERO
     }
 
     fn add_connection(&mut self, connector: &Connector, wrench: &Wrench, level: f64, force: f64, lever: f64) -> Wrench {
@@ -125,36 +124,32 @@ impl Rooms {
                 }
                 centre
             }
-            Model::Patch { friction, points } => {
-                let mut centre = Wrench::ZERO;
-                let spread = Spread::new(points);
-                let total = (held + f.z).max(DEPTH * held);
-                for p in points {
-                    let at = Vec3::new(p[0], p[1], 0.0);
-                    let pressed = spread.force(p, &Wrench::new(Vec3::new(f.x, f.y, total), *m));
-                    centre += self.add_point(&pressed, *friction, &at, DEPTH * held);
-                }
-                centre
-            }
+            Model::Patch { .. } => Wrench::ZERO,
         }
     }
 
-    /// Room of a force in a friction cone at a point of the link's frame.
-    fn add_point(&mut self, force: &Vec3, friction: f64, at: &Vec3, depth: f64) -> Wrench {
-        let at_origin = |force: Vec3| Wrench::new(force, at.cross(&force));
-        if friction > 0.0 {
-            let z = [force.z, force.x / friction, force.y / friction];
-            let columns = columns(&z, depth);
-            let columns = columns.map(|[normal, x, y]| at_origin(Vec3::new(x * friction, y * friction, normal)));
-            for column in &columns {
-                self.push(column);
-            }
-            columns[0]
-        } else {
-            let column = at_origin(Vec3::z() * force.z.max(depth));
-            self.push(&column);
-            column
+    /// Room of a force at a point of a face.
+    fn add_point(&mut self, force: &Vec3, friction: f64, p: &[f64; 2], depth: f64) -> Wrench {
+        let at = Vec3::new(p[0], p[1], 0.0);
+        let columns = point_columns(force, friction, depth);
+        let mut metric = Matrix3::zeros();
+        for column in &columns {
+            metric.ger(1.0, column, column, 1.0);
+            self.push(&Wrench::new(*column, at.cross(column)));
         }
+        self.points.push(metric);
+        self.centres.points.push(columns[0]);
+        Wrench::new(columns[0], at.cross(&columns[0]))
+    }
+}
+
+/// The columns of C of a force in a friction cone, itself the first.
+fn point_columns(force: &Vec3, friction: f64, depth: f64) -> [Vec3; 3] {
+    if friction > 0.0 {
+        let z = [force.z, force.x / friction, force.y / friction];
+        columns(&z, depth).map(|[normal, x, y]| Vec3::new(x * friction, y * friction, normal))
+    } else {
+        [Vec3::z() * force.z.max(depth), Vec3::zeros(), Vec3::zeros()]
     }
 }
 

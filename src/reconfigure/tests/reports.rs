@@ -1,0 +1,96 @@
+//! What a report says: further plans, limits, progress, and the same for any number of threads.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use crate::reconfigure::moves::{Motion, Move};
+use crate::reconfigure::plan::{Limit, Objective, Outcome, Plan};
+use crate::reconfigure::replay::replay;
+use crate::reconfigure::solve::{Options, solve};
+use crate::reconfigure::trace::Trace;
+use crate::robot::{Cell, Face};
+
+use super::{cubes, goal, plan, solved, tower_to_row};
+
+#[test]
+fn plans_do_not_depend_on_the_number_of_threads() {
+    let (start, target) = tower_to_row();
+    let with = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let mut report = pool.install(|| plan(&start, &target, &Options { plans: 3, ..Options::default() }));
+        report.statistics.seconds = 0.0;
+        report
+    };
+    let one = with(1);
+    solved(&one);
+    assert_eq!(one, with(2));
+    assert_eq!(one, with(4));
+}
+
+#[test]
+fn further_plans_differ_in_more_than_the_order_of_independent_moves() {
+    // Two cubes, far apart on a held bar, each move one step: one plan, in two orders.
+    let bar: Vec<Cell> = (0..8).map(|x| [x, 0, 0]).collect();
+    let with = |ends: [Cell; 2]| cubes(&[&bar[..], &ends].concat(), 8);
+    let (start, target) = (with([[0, 0, 1], [7, 0, 1]]), goal(with([[1, 0, 1], [6, 0, 1]])));
+    let options = Options { objective: Objective::Moves, plans: 2, max_expansions: Some(60), ..Options::default() };
+    let report = solve(&start, &target, &options, &mut |_| {}).unwrap();
+    let best = report.plan.as_ref().unwrap();
+    assert_eq!(best.moves, 2);
+    for other in &report.alternatives {
+        assert!(replay(&start, &target, other, 0.0).unwrap().is_verified());
+        let moved = |plan: &Plan| {
+            let mut moves: Vec<_> = plan.actions.iter().filter(|p| p.action.is_move()).map(|p| p.action).collect();
+            moves.sort_by_key(|action| format!("{action:?}"));
+            moves
+        };
+        assert_ne!(moved(best), moved(other), "the same moves in another order");
+    }
+}
+
+#[test]
+fn a_report_says_when_further_plans_were_not_looked_for_to_the_end() {
+    let (start, target) = tower_to_row();
+    let of = |max_expansions| {
+        let options = Options { objective: Objective::Moves, plans: 1000, max_expansions, ..Options::default() };
+        plan(&start, &target, &options)
+    };
+    let best = solve(&start, &target, &Options { objective: Objective::Moves, ..Options::default() }, &mut |_| {});
+    let best = best.unwrap();
+    assert_eq!(best.alternatives_cut_by, None, "one plan was asked for, and there it is");
+    let cut = of(Some(best.statistics.expanded + 5));
+    assert_eq!(cut.plan, best.plan);
+    assert!(cut.alternatives.len() < 999);
+    assert_eq!((cut.outcome, cut.alternatives_cut_by), (Outcome::Solved, Some(Limit::Expansions)));
+}
+
+#[test]
+fn limits_and_cancellation_end_the_search_honestly() {
+    let (start, target) = tower_to_row();
+    let few = plan(&start, &target, &Options { max_expansions: Some(1), ..Options::default() });
+    assert_eq!(few.outcome, Outcome::OutOfBudget(Limit::Expansions));
+    assert!(!few.proof.optimal && few.proof.margin_at_most > 0.0);
+    let cancel = Arc::new(AtomicBool::new(false));
+    cancel.store(true, Ordering::Relaxed);
+    let cancelled = plan(&start, &target, &Options { cancel: Some(cancel), ..Options::default() });
+    assert_eq!(cancelled.outcome, Outcome::OutOfBudget(Limit::Cancelled));
+}
+
+#[test]
+fn progress_is_reported() {
+    let (start, target) = tower_to_row();
+    let mut events = Vec::new();
+    solve(&start, &target, &Options::default(), &mut |event| events.push(*event)).unwrap();
+    assert!(!events.is_empty());
+    assert!(events.windows(2).all(|pair| pair[0].oracle_solves <= pair[1].oracle_solves));
+}
+
+#[test]
+fn a_trace_forgets_the_order_of_independent_moves_only() {
+    let slide = |from, direction| Move { from, motion: Motion::Slide { direction } };
+    let (near, far) = (slide([0, 0, 1], Face::PosX), slide([7, 0, 1], Face::NegX));
+    let next = slide([1, 0, 1], Face::PosX);
+    assert_eq!(Trace::new([near, far]), Trace::new([far, near]));
+    assert_eq!(Trace::new([near, next, far]), Trace::new([far, near, next]));
+    assert_ne!(Trace::new([near, next]), Trace::new([next, near]));
+}
