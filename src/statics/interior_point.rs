@@ -7,8 +7,9 @@
 //! which answers the same question, is asked instead. As with `conic`, nothing
 //! that comes back is believed: see `bracket`.
 
+use super::chains::has_long_chains;
 use super::conic::Iterate;
-use super::network::{Network, has_long_chains};
+use super::network::Network;
 use super::parts::{Part, parts};
 use super::planar::Planar;
 use super::program::Program;

@@ -16,11 +16,15 @@
 //! files or plans.
 
 mod answer;
+mod as_one;
 mod assess;
 mod assessment;
+mod attempts;
 mod balance;
+mod best;
 mod blocks;
 mod bracket;
+mod chains;
 mod closed_form;
 mod clusters;
 mod collapse;

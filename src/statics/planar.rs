@@ -23,8 +23,11 @@ const SAME: f64 = 1e-9;
 /// Rows of a body's balance, or of its motion, in space.
 type Six = [f64; 6];
 
-/// Columns of a group at both ends of its link, with the bodies there.
-type Ends = [Option<(usize, [Six; 6])>; 2];
+/// Columns of a group at one end of its link, with the body there.
+type End = Option<(usize, [Six; 6])>;
+
+/// Both ends of it.
+type Ends = [End; 2];
 
 /// A block's program in its plane.
 pub(super) struct Planar {
@@ -332,7 +335,7 @@ fn pair(mirror: &Mirror, parts: &[Part<6>], index: usize) -> Option<(usize, Kept
             images = combine(&other.ends, &others);
         }
         if (0..own.len()).all(|k| alike(mirror, &ends, &images, k, 1.0)) {
-            let sum = |(one, two): (&Option<(usize, [Six; 6])>, &Option<(usize, [Six; 6])>)| {
+            let sum = |one: &End, two: &End| {
                 let ((body, a), (_, b)) = (one.as_ref()?, two.as_ref()?);
                 let sum = |k: usize| std::array::from_fn(|r| a[k][r] + b[k][r]);
                 Some((*body, std::array::from_fn(sum)))
@@ -343,7 +346,7 @@ fn pair(mirror: &Mirror, parts: &[Part<6>], index: usize) -> Option<(usize, Kept
             };
             let mut both = sources(part.first, &own);
             both.extend(sources(other.first, &others));
-            let ends = [sum((&ends[0], &images[0])), sum((&ends[1], &images[1]))];
+            let ends = [sum(&ends[0], &images[0]), sum(&ends[1], &images[1])];
             return Some((twin, Kept { ends, len: own.len(), sources: both }));
         }
     }
