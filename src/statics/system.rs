@@ -24,6 +24,9 @@ use super::stiffness::Matrix;
 /// it is corrected: below, it would change nothing.
 const REFINE: f64 = 1e-3;
 
+/// How much longer a step is wished for when it is bent.
+const FURTHER: f64 = 0.3;
+
 /// All elements of one size.
 struct Family<const D: usize, const N: usize> {
     elements: Vec<Element<D, N>>,
@@ -356,6 +359,30 @@ impl<const D: usize> System<D> {
         each!(self.families, iter_mut, element => element.correct(mu, &mut rows));
         self.t.correct(mu, &mut []);
         self.complete(rows, REFINE * mu);
+    }
+
+    /// Bends the step towards the central path of complementarity `mu`, where it would leave
+    /// it if it were somewhat longer than `reach`, as far as that makes it longer
+    /// (Gondzio 1996). The largest steps afterwards.
+    pub(super) fn centre(&mut self, reach: [f64; 2], mu: f64, shorten: f64) -> [f64; 2] {
+        let wanted = reach.map(|step| (step + FURTHER).min(1.0));
+        let dv = self.dv.clone();
+        let changes: Vec<f64> = self.ties.iter().map(|tie| tie.change).collect();
+        let mut rows = self.unbalanced();
+        each!(self.families, iter_mut, element => element.centre(wanted, mu, &mut rows));
+        self.t.centre(wanted, mu, &mut []);
+        self.complete(rows, REFINE * mu);
+        let bent = self.reach(shorten);
+        if bent[0].min(bent[1]) > reach[0].min(reach[1]) {
+            return bent;
+        }
+        each!(self.families, iter_mut, element => element.straighten());
+        self.t.straighten();
+        self.dv = dv;
+        for (tie, change) in self.ties.iter_mut().zip(changes) {
+            tie.change = change;
+        }
+        reach
     }
 
     fn unbalanced(&self) -> Vec<Rows<D>> {
