@@ -24,6 +24,10 @@ use super::stiffness::Matrix;
 /// it is corrected: below, it would change nothing.
 const REFINE: f64 = 1e-3;
 
+/// Rounds of correction, and the share of the imbalance that each must leave at most.
+const REFINEMENTS: usize = 4;
+const HELPS: f64 = 0.5;
+
 /// How much longer a step is wished for when it is bent.
 const FURTHER: f64 = 0.3;
 
@@ -389,28 +393,33 @@ impl<const D: usize> System<D> {
         self.lacking.iter().map(|lacking| lacking.map(|value| -value)).collect()
     }
 
-    /// Moves the bodies so that the forces of the step, `rows` without t's, balance, once more
-    /// if more than `accuracy` is left.
+    /// Moves the bodies so that the forces of the step, `rows` without t's, balance, and
+    /// again while more than `accuracy` is left and that helps.
     fn complete(&mut self, mut rows: Vec<Rows<D>>, accuracy: f64) {
         self.dv.fill([0.0; D]);
         for tie in &mut self.ties {
             tie.change = 0.0;
         }
         self.move_bodies(&rows);
-        if accuracy == f64::INFINITY {
-            return;
-        }
-        rows = self.unbalanced();
-        each!(self.families, iter, element => element.push(&element.dx, &mut rows));
-        let t = self.t.dx[0];
-        let left = rows
-            .iter()
-            .zip(&self.preload)
-            .flat_map(|(row, preload)| row.iter().zip(preload).map(|(value, preload)| (value + preload * t).abs()));
-        let left = self.ties.iter().map(|tie| self.tie_force(tie).abs()).chain(left).fold(0.0, f64::max);
-        if !(left <= accuracy) {
+        let mut before = f64::INFINITY;
+        for _ in 0..if accuracy < f64::INFINITY { REFINEMENTS } else { 0 } {
+            rows = self.unbalanced();
+            each!(self.families, iter, element => element.push(&element.dx, &mut rows));
+            let left = self.left(&rows);
+            if left <= accuracy || !(left <= HELPS * before) {
+                return;
+            }
+            before = left;
             self.move_bodies(&rows);
         }
+    }
+
+    /// Largest imbalance of the step, of which `rows` is without t's force.
+    fn left(&self, rows: &[Rows<D>]) -> f64 {
+        let t = self.t.dx[0];
+        let balances = rows.as_flattened().iter().zip(self.preload.as_flattened());
+        let balances = balances.map(|(row, preload)| (row + preload * t).abs());
+        self.ties.iter().map(|tie| self.tie_force(tie).abs()).chain(balances).fold(0.0, f64::max)
     }
 
     /// What the step's forces amount to on a tie row, beyond what it lacked.
