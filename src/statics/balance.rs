@@ -26,6 +26,10 @@ const ROUNDS: usize = 6;
 /// Scaled imbalance that is mere rounding.
 const BALANCED: f64 = 1e-14;
 
+/// Least share of its force scale that counts as going through a body: one that carries
+/// less than it might is balanced more finely.
+const LITTLE: f64 = 1e-6;
+
 /// Room, relative to the square of the force through a link, that every component
 /// has at least: keeps the factorisation accurate where a connection is at its
 /// limit. A contact has less, since it must not leave its cone.
@@ -89,7 +93,12 @@ pub(super) fn restore(problem: &Problem<'_>, iterate: &Iterate, field: &mut [Wre
         for (wrench, factors) in lacking.iter().zip(program.row_factor.chunks_exact(6)) {
             rhs.extend(wrench.force.iter().chain(wrench.torque.iter()).zip(factors).map(|(w, f)| -w * f));
         }
-        if rhs.iter().all(|lacking| lacking.abs() <= BALANCED) {
+        let through = problem.forces_through(field);
+        let shares = through.iter().zip(&program.scales.force).map(|(through, force)| through / force);
+        let mere_rounding = |(rows, share): (&[f64], f64)| {
+            rows.iter().all(|lacking| lacking.abs() <= BALANCED * share.clamp(LITTLE, 1.0))
+        };
+        if rhs.chunks_exact(6).zip(shares).all(mere_rounding) {
             return;
         }
         let (network, metric) = springs.get_or_insert_with(|| {

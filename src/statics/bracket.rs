@@ -98,7 +98,7 @@ impl Problem<'_> {
     }
 
     /// Sum of the sizes of all forces on every body of the block.
-    fn forces_through(&self, field: &[Wrench]) -> Vec<f64> {
+    pub(super) fn forces_through(&self, field: &[Wrench]) -> Vec<f64> {
         let mut through = vec![0.0; self.block.bodies.len()];
         for (frame, wrench) in self.program.frames.iter().zip(field) {
             for (side, _) in frame.sides() {

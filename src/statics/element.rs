@@ -8,12 +8,16 @@
 //! Knows its own columns, nothing of other elements.
 
 use super::network::Network;
-use super::second_order::{Scaling, aim, dot, shortened_step};
+use super::second_order::{Scaling, aim, divide, dot, product, shortened_step, towards};
 use super::stiffness::{Matrix, Stiffness};
 
 /// Weight of a variable without a cone. Its dual residual is what it still moves
 /// by, over this.
 const FREE_WEIGHT: f64 = 1e8;
+
+/// How far from the mean the complementarity of a cone may be, either way, before it
+/// is corrected.
+const SPREAD: f64 = 10.0;
 
 /// The balances of a body, or its scaled twist.
 pub(super) type Rows<const D: usize> = [f64; D];
@@ -48,9 +52,12 @@ pub(super) struct Element<const D: usize, const N: usize> {
     point: [f64; N],
     /// `c + A'v - s`.
     pub opening: [f64; N],
-    /// The step of x and s.
+    /// Where the step aims, `W dx + W^-1 ds`, and the step of x and s.
+    target: [f64; N],
     pub dx: [f64; N],
     pub ds: [f64; N],
+    /// The step before it was bent.
+    straight: [[f64; N]; 2],
 }
 
 impl<const D: usize, const N: usize> Element<D, N> {
@@ -76,8 +83,10 @@ impl<const D: usize, const N: usize> Element<D, N> {
             scaling,
             point: zero,
             opening: zero,
+            target: zero,
             dx: zero,
             ds: zero,
+            straight: [zero; 2],
         }
     }
 
@@ -152,8 +161,31 @@ impl<const D: usize, const N: usize> Element<D, N> {
         self.seek(target, rows);
     }
 
+    /// Heads closer to the central path of complementarity `mu` than the step so far
+    /// would come if it were as long as `reach`.
+    pub(super) fn centre(&mut self, [x, s]: [f64; 2], mu: f64, rows: &mut [Rows<D>]) {
+        self.straight = [self.dx, self.ds];
+        let mut target = self.target;
+        if !self.free {
+            let (dx, ds) = (self.scaling.apply(&self.dx), self.scaling.apply_inverse(&self.ds));
+            let there = product(
+                &std::array::from_fn(|k| self.point[k] + x * dx[k]),
+                &std::array::from_fn(|k| self.point[k] + s * ds[k]),
+            );
+            let change = divide(&self.point, &towards(&there, [mu / SPREAD, mu * SPREAD]));
+            target = std::array::from_fn(|k| target[k] + change[k]);
+        }
+        self.seek(target, rows);
+    }
+
+    /// Takes back [`centre`](Self::centre).
+    pub(super) fn straighten(&mut self) {
+        [self.dx, self.ds] = self.straight;
+    }
+
     /// The step to `W x + W^-1 s = target` if no body moved.
     fn seek(&mut self, target: [f64; N], rows: &mut [Rows<D>]) {
+        self.target = target;
         let scaled = self.scaling.apply_inverse(&self.opening);
         self.dx = self.scaling.apply_inverse(&std::array::from_fn(|k| target[k] - scaled[k]));
         self.ds = self.opening;

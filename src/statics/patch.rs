@@ -33,6 +33,11 @@ const GAP: f64 = 1e-14;
 /// degenerate patch do not have, and a wrench as having a part in it.
 const UNHELD: f64 = 1e-11;
 
+/// Share of what friction leaves for torsion that is relied on, and how near to an
+/// edge, relative to the size of the face, a point counts as on it.
+const NEARLY: f64 = 1.0 - 1e-9;
+const IN_A_ROW: f64 = 1e-12;
+
 /// Rounds in which forces at a face's points are made to add up to what they carry.
 const REPAIRS: usize = 3;
 
@@ -75,6 +80,14 @@ pub(super) fn least_normal_force(wrench: &Wrench, friction: f64, points: &[[f64;
         let slide = Twist::new(Vec3::new(-wanted[0], -wanted[1], 0.0), Vec3::z() * (-wanted[4] / lever));
         return NormalForce { total: Bracket::exact(f64::INFINITY), twist: slide };
     }
+    if let Some(proportional) = in_proportion(wrench, friction, points, &bending, negligible * lever) {
+        return proportional;
+    }
+    iterated(&wanted, lever, friction, points, bending)
+}
+
+/// N* of a cone program; `wanted` are shear in N and torques over `lever`.
+fn iterated(wanted: &Rows, lever: f64, friction: f64, points: &[[f64; 2]], bending: NormalForce) -> NormalForce {
     let unit: Vec<[f64; 2]> = points.iter().map(|p| [p[0] / lever, p[1] / lever]).collect();
     // Shear and torsion count over the friction coefficient: then there is but one cone.
     let rough = Rows::new(1.0 / friction, 1.0 / friction, 1.0, 1.0, 1.0 / friction);
@@ -169,6 +182,53 @@ fn centre_of_pressure(wrench: &Wrench, points: &[[f64; 2]]) -> NormalForce {
         }
     }
     worst
+}
+
+/// N* where no more pressure is needed than bending or shear take on their own: with shear
+/// in proportion to pressure, which twists the face about the centre of pressure not at all, and
+/// where bending decides, with the two points that it leaves under pressure slid around that
+/// centre as far as friction allows. `None` where that does not give the torsion that is
+/// wanted, up to `negligible` in N m.
+fn in_proportion(
+    wrench: &Wrench,
+    friction: f64,
+    points: &[[f64; 2]],
+    bending: &NormalForce,
+    negligible: f64,
+) -> Option<NormalForce> {
+    let (f, m) = (&wrench.force, &wrench.torque);
+    let shear = f.xy().norm();
+    let rubbing = shear / friction;
+    let total = bending.total.upper.max(rubbing);
+    if !(total > 0.0 && total < f64::INFINITY) {
+        return None;
+    }
+    let centre = Vector2::new(-m.y, m.x) / total;
+    let torsion = (m.z - (centre.x * f.y - centre.y * f.x)).abs();
+    if rubbing > bending.total.upper {
+        let slide = Twist::new(Vec3::new(-f.x, -f.y, 0.0) / rubbing / (friction * friction) + Vec3::z(), Vec3::zeros());
+        return (torsion <= negligible).then(|| NormalForce { total: Bracket::exact(total), twist: slide });
+    }
+    let left = (friction * total - shear) * arm_on_edge(&centre, points);
+    (torsion <= negligible || torsion <= left * NEARLY)
+        .then(|| NormalForce { total: bending.total, twist: bending.twist })
+}
+
+/// Distance in m of the nearer of the two outermost points in a row with `centre`, a point of the
+/// hull's boundary between them; 0 where there are none.
+fn arm_on_edge(centre: &Vector2<f64>, points: &[[f64; 2]]) -> f64 {
+    let near = size(points) * IN_A_ROW;
+    let on_edge = edges(points).into_iter().filter_map(|edge| {
+        let normal = Vector2::from(edge.normal);
+        ((normal.dot(centre) - edge.distance).abs() <= near).then(|| {
+            let along = Vector2::new(-normal.y, normal.x);
+            let row =
+                points.iter().map(|p| Vector2::from(*p)).filter(|p| (normal.dot(p) - edge.distance).abs() <= near);
+            let ahead = |side: f64| row.clone().map(|p| side * along.dot(&(p - centre))).fold(0.0, f64::max);
+            ahead(1.0).min(ahead(-1.0))
+        })
+    });
+    on_edge.fold(0.0, f64::max)
 }
 
 struct Program<'p> {
@@ -420,6 +480,42 @@ mod tests {
         }
         let power = -found.twist.power(&wrench);
         assert!((power - found.total.lower).abs() <= 1e-9 * power);
+    }
+
+    #[test]
+    fn in_proportion_agrees_with_the_iteration() {
+        let mut state = 3_u64;
+        let mut next = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1_u64 << 53) as f64 * 2.0 - 1.0
+        };
+        let (mut bent, mut rubbed) = (0, 0);
+        for n in 0..600 {
+            let points: Vec<[f64; 2]> = SQUARE.map(|p| [p[0] + 0.01 * next(), p[1] + 0.01 * next()]).to_vec();
+            let shear = [next(), next()];
+            let mut wrench = Wrench::new(Vec3::new(shear[0], shear[1], 0.0), Vec3::new(next(), next(), 0.0) * 0.2);
+            let bending = centre_of_pressure(&wrench, &points);
+            let total = bending.total.upper.max(wrench.force.xy().norm() / 0.4);
+            let centre = [-wrench.torque.y / total, wrench.torque.x / total];
+            let twist = if n % 2 == 0 { 0.0 } else { 0.05 * next() };
+            wrench.torque.z = centre[0] * shear[1] - centre[1] * shear[0] + twist;
+            let Some(closed) = in_proportion(&wrench, 0.4, &points, &bending, 1e-13) else { continue };
+            *(if closed.total.upper > bending.total.upper { &mut rubbed } else { &mut bent }) += 1;
+            let (f, m) = (wrench.force, wrench.torque);
+            let wanted = Rows::new(f.x, f.y, m.x / 0.05, m.y / 0.05, m.z / 0.05);
+            let iterated = iterated(&wanted, 0.05, 0.4, &points, bending).total;
+            assert!(
+                (closed.total.upper - iterated.upper).abs() <= 1e-8 * iterated.upper,
+                "{:?} {iterated:?}",
+                closed.total
+            );
+            for [px, py] in points {
+                let at = closed.twist.at(&Vec3::new(px, py, 0.0));
+                assert!(at.z >= 0.4 * at.xy().norm() - 1e-12, "{at:?}");
+            }
+            assert!((-closed.twist.power(&wrench) - closed.total.lower).abs() <= 1e-12 * closed.total.lower);
+        }
+        assert!(bent > 150 && rubbed > 40, "{bent} {rubbed}");
     }
 
     #[test]

@@ -123,6 +123,18 @@ pub(super) fn aim<const N: usize>(point: &[f64; N], dx: &[f64; N], ds: &[f64; N]
     divide(point, &wanted)
 }
 
+/// What brings the eigenvalues of `p`, `p_0 +- |p_1..|`, into the interval; from far above
+/// only by the interval's upper end (Gondzio 1996).
+pub(super) fn towards<const N: usize>(p: &[f64; N], [low, high]: [f64; 2]) -> [f64; N] {
+    let tail = norm(&p[1..]);
+    let change = |value: f64| (value.clamp(low, high) - value).max(-high);
+    let (up, down) = (change(p[0] + tail), change(p[0] - tail));
+    if N == 1 || tail == 0.0 {
+        return std::array::from_fn(|k| if k == 0 { up } else { 0.0 });
+    }
+    std::array::from_fn(|k| if k == 0 { 0.5 * (up + down) } else { 0.5 * (up - down) * p[k] / tail })
+}
+
 pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()
 }

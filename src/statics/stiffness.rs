@@ -14,7 +14,7 @@ use std::collections::BinaryHeap;
 pub(super) type Matrix<const D: usize> = [[f64; D]; D];
 
 /// Least pivot, as a share of the diagonal entry it came from: what is left
-/// below that is rounding.
+/// below that is rounding, or less than nothing.
 const LEAST_PIVOT: f64 = 1e-14;
 
 /// Pivot root that stands for infinity.
@@ -237,8 +237,8 @@ fn least_degree(bodies: usize, pairs: impl Iterator<Item = (usize, usize)>) -> (
 /// Overwrites the lower triangle with the Cholesky factor, its diagonal inverted.
 fn cholesky<const D: usize>(matrix: &mut Matrix<D>, least: &[f64; D]) {
     for c in 0..D {
-        // Less than nothing is left, all of it rounding: let this component rest (Wright 1999).
-        let root = if matrix[c][c] > 0.0 { matrix[c][c].max(least[c]).sqrt() } else { AT_REST };
+        // Where all that is left is rounding, let this component rest (Wright 1999).
+        let root = if matrix[c][c] > least[c] { matrix[c][c].sqrt() } else { AT_REST };
         let inverse = root.recip();
         matrix[c][c] = inverse;
         for entry in &mut matrix[c][c + 1..] {

@@ -25,6 +25,13 @@ use super::stiffness::Matrix;
 /// it is corrected: below, it would change nothing.
 const REFINE: f64 = 1e-3;
 
+/// Rounds of correction, and the share of the imbalance that each must leave at most.
+const REFINEMENTS: usize = 4;
+const HELPS: f64 = 0.5;
+
+/// How much longer a step is wished for when it is bent.
+const FURTHER: f64 = 0.3;
+
 /// All elements of one size.
 struct Family<const D: usize, const N: usize> {
     elements: Vec<Element<D, N>>,
@@ -359,32 +366,61 @@ impl<const D: usize> System<D> {
         self.complete(rows, REFINE * mu);
     }
 
+    /// Bends the step towards the central path of complementarity `mu`, where it would leave
+    /// it if it were somewhat longer than `reach`, as far as that makes it longer
+    /// (Gondzio 1996). The largest steps afterwards.
+    pub(super) fn centre(&mut self, reach: [f64; 2], mu: f64, shorten: f64) -> [f64; 2] {
+        let wanted = reach.map(|step| (step + FURTHER).min(1.0));
+        let dv = self.dv.clone();
+        let changes: Vec<f64> = self.ties.iter().map(|tie| tie.change).collect();
+        let mut rows = self.unbalanced();
+        each!(self.families, iter_mut, element => element.centre(wanted, mu, &mut rows));
+        self.t.centre(wanted, mu, &mut []);
+        self.complete(rows, REFINE * mu);
+        let bent = self.reach(shorten);
+        if bent[0].min(bent[1]) > reach[0].min(reach[1]) {
+            return bent;
+        }
+        each!(self.families, iter_mut, element => element.straighten());
+        self.t.straighten();
+        self.dv = dv;
+        for (tie, change) in self.ties.iter_mut().zip(changes) {
+            tie.change = change;
+        }
+        reach
+    }
+
     fn unbalanced(&self) -> Vec<Rows<D>> {
         self.lacking.iter().map(|lacking| lacking.map(|value| -value)).collect()
     }
 
-    /// Moves the bodies so that the forces of the step, `rows` without t's, balance, once more
-    /// if more than `accuracy` is left.
+    /// Moves the bodies so that the forces of the step, `rows` without t's, balance, and
+    /// again while more than `accuracy` is left and that helps.
     fn complete(&mut self, mut rows: Vec<Rows<D>>, accuracy: f64) {
         self.dv.fill([0.0; D]);
         for tie in &mut self.ties {
             tie.change = 0.0;
         }
         self.move_bodies(&rows);
-        if accuracy == f64::INFINITY {
-            return;
-        }
-        rows = self.unbalanced();
-        each!(self.families, iter, element => element.push(&element.dx, &mut rows));
-        let t = self.t.dx[0];
-        let left = rows
-            .iter()
-            .zip(&self.preload)
-            .flat_map(|(row, preload)| row.iter().zip(preload).map(|(value, preload)| (value + preload * t).abs()));
-        let left = self.ties.iter().map(|tie| self.tie_force(tie).abs()).chain(left).fold(0.0, f64::max);
-        if !(left <= accuracy) {
+        let mut before = f64::INFINITY;
+        for _ in 0..if accuracy < f64::INFINITY { REFINEMENTS } else { 0 } {
+            rows = self.unbalanced();
+            each!(self.families, iter, element => element.push(&element.dx, &mut rows));
+            let left = self.left(&rows);
+            if left <= accuracy || !(left <= HELPS * before) {
+                return;
+            }
+            before = left;
             self.move_bodies(&rows);
         }
+    }
+
+    /// Largest imbalance of the step, of which `rows` is without t's force.
+    fn left(&self, rows: &[Rows<D>]) -> f64 {
+        let t = self.t.dx[0];
+        let balances = rows.as_flattened().iter().zip(self.preload.as_flattened());
+        let balances = balances.map(|(row, preload)| (row + preload * t).abs());
+        self.ties.iter().map(|tie| self.tie_force(tie).abs()).chain(balances).fold(0.0, f64::max)
     }
 
     /// What the step's forces amount to on a tie row, beyond what it lacked.
