@@ -121,8 +121,8 @@ fn left_out(named: &NamedStructure, explanation: &Explanation) -> Vec<String> {
     tell(
         planar,
         format!(
-            "forces across the plane and torques within it: {} of {} look the same in a mirror; three equations a body are enough, points in mirrored pairs are one, and a point's friction cone is two inequalities",
-            count(planar, "block", "blocks"),
+            "{} in a plane ({}): no force across it and no torque within it, so three equations a body; points in mirrored pairs are one, and a point's friction cone is two inequalities",
+            count(planar, "block lies", "blocks lie"),
             count(sum(|block| if block.is_planar() { block.bodies } else { 0 }), "body", "bodies"),
         ),
     );

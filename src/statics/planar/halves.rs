@@ -73,7 +73,7 @@ pub(super) fn pair(mirror: &Mirror, parts: &[Part<6>], index: usize, paired: &[b
     if part.len == 6 || part.cone == Cone::Free || part.tie_row.is_some() {
         return None;
     }
-    // Of a pair's shear across the plane nothing may be left but what cancels, or only holds across it.
+    // Shear across the plane is left out, so it must not act within it, as on the slopes of a groove.
     let [a, b] = along(mirror, part);
     let across = combine(&part.ends, &[vec![(1, -b), (2, a)]]);
     if part.len == 3 && mirror.parity(&columns(&across, 0)) != Parity::Odd {
