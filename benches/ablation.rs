@@ -37,12 +37,13 @@ const QUICK: f64 = 10.0;
 /// Room between brackets for the rounding in what is left of the data.
 const ROOM: f64 = 1e-8;
 
-const WAYS: [(&str, Reductions); 7] = [
+const WAYS: [(&str, Reductions); 8] = [
     ("all", Reductions::ALL),
     ("no rigid links", Reductions { rigid_links: false, ..Reductions::ALL }),
     ("no blocks", Reductions { blocks: false, ..Reductions::ALL }),
     ("no closed form", Reductions { closed_form: false, ..Reductions::ALL }),
     ("no chains", Reductions { chains: false, ..Reductions::ALL }),
+    ("no planes", Reductions { planar: false, ..Reductions::ALL }),
     ("not parallel", Reductions { parallel: false, ..Reductions::ALL }),
     ("none", Reductions::NONE),
 ];
@@ -112,7 +113,7 @@ fn report(rows: &[Row]) -> String {
     let mut text = format!(
         "# What is left out\n\n{}\n\nMilliseconds to a gap of 1e-6, of up to {ROUNDS} rounds in turns the fastest, by the \
          clock on the wall and with all cores. In brackets: times what it takes with all reductions. The brackets of all \
-         seven answers have a point in common on every scene.\n\n| scene | bodies | links | t |",
+         eight answers have a point in common on every scene.\n\n| scene | bodies | links | t |",
         machine::describe().replace("; one thread", "")
     );
     for (way, _) in WAYS {
@@ -130,17 +131,18 @@ fn report(rows: &[Row]) -> String {
         }
     }
     text += "\n\nWhat was left out, and what remained:\n\n\
-             | scene | merged bodies | closed form | in chains | blocks | largest | unknown wrenches | equations | cones |\n\
-             | --- | --- | --- | --- | --- | --- | --- | --- | --- |";
+             | scene | merged bodies | closed form | in chains | blocks | planar | largest | unknown wrenches | equations | cones |\n\
+             | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |";
     for Row { scene, left, .. } in rows {
         let blocks = &left.remaining;
         let _ = write!(
             text,
-            "\n| {scene} | {} | {} | {} | {} | {} | {} | {} | {} |",
+            "\n| {scene} | {} | {} | {} | {} | {} | {} | {} | {} | {} |",
             left.merged_bodies,
             left.closed_form_connections + left.closed_form_contacts,
             blocks.iter().map(|block| block.bodies_in_chains).sum::<usize>(),
             blocks.len(),
+            blocks.iter().filter(|block| block.is_planar()).count(),
             blocks.iter().map(|block| block.bodies).max().unwrap_or(0),
             blocks.iter().map(|block| block.unknown_wrenches).sum::<usize>(),
             blocks.iter().map(|block| block.equations).sum::<usize>(),

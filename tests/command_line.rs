@@ -72,10 +72,13 @@ fn what_was_left_out_is_explained() {
     assert!(report.contains("4 fixed bodies"), "{report}");
     assert!(report.contains("there is no contact"), "{report}");
     assert!(report.lines().all(|line| line.chars().count() <= 80), "{report}");
-    // The table ends with the one block: its 72 bodies, and fewer unknowns than connections.
+    // The table ends with the one block, which lies in a plane: 72 bodies, 84 unknown wrenches.
+    assert!(report.contains("1 block lies in a plane (72 bodies)"), "{report}");
     let remained: Vec<&str> = report.lines().last().unwrap().split_whitespace().collect();
-    assert_eq!(remained[0], "72", "{report}");
-    assert!(remained[1].parse::<usize>().unwrap() < 84, "{report}");
+    assert_eq!(remained, ["72", "84", "216", "84", "0"], "{report}");
+
+    let report = stdout(&plan(&["check", "--explain", "structures/random_000.json"]));
+    assert!(report.contains("1 block with six equations a body: no plane holds"), "{report}");
 
     let report = stdout(&plan(&["check", "--explain", "structures/cantilever_box_10.json"]));
     assert!(report.contains("10 connections and 0 contacts in closed form"), "{report}");
@@ -90,6 +93,8 @@ fn the_json_report_explains_only_when_asked() {
     assert_eq!((&explanation["fixed_bodies"], &explanation["linear"]), (&4.into(), &false.into()));
     assert_eq!(explanation["remaining"][0]["bodies"], 72);
     assert_eq!(explanation["remaining"][0]["friction_cones"], 0);
+    assert_eq!(explanation["remaining"][0]["planar"], true);
+    assert!(explanation["remaining"][0]["in_space_because"].is_null());
 }
 
 #[test]

@@ -2,13 +2,17 @@
 //! every kind, with some connections made unlimited, every reduction alone and all
 //! together against none. Every answer is also judged from its fields alone.
 
+#[path = "support/flat.rs"]
+mod flat;
 #[path = "support/random.rs"]
 mod random;
 #[path = "support/recheck.rs"]
 mod recheck;
 
+use flat::flat;
 use random::{Kind, Random, Recipe, structure};
 use recheck::recheck;
+use steadfast::spatial::Vec3;
 use steadfast::statics::{
     Anchor, Assessment, Bracket, Connector, Model, Question, Reductions, Rung, Structure, Verdict, assess,
     assess_reduced, explain,
@@ -18,13 +22,14 @@ use steadfast::statics::{
 const ROOM: f64 = 1e-8;
 
 /// Each reduction alone switched off, and all of them.
-fn variants() -> [(&'static str, Reductions); 6] {
+fn variants() -> [(&'static str, Reductions); 7] {
     let all = Reductions::ALL;
     [
         ("rigid links", Reductions { rigid_links: false, ..all }),
         ("blocks", Reductions { blocks: false, ..all }),
         ("closed form", Reductions { closed_form: false, ..all }),
         ("chains", Reductions { chains: false, ..all }),
+        ("planar", Reductions { planar: false, ..all }),
         ("parallel", Reductions { parallel: false, ..all }),
         ("everything", Reductions::NONE),
     ]
@@ -115,6 +120,74 @@ fn verdicts_agree_however_they_are_found() {
             }
         }
     }
+}
+
+fn judged(structure: &Structure, reductions: Reductions, name: &str) -> Assessment {
+    let answer = ask(structure, Question::VALUE, reductions);
+    if let Err(fault) = recheck(structure, &answer) {
+        panic!("{name}: {fault}");
+    }
+    answer
+}
+
+/// Structures in a plane of their own: no reduction changes what they need, and three balances
+/// a body say as much of it as six.
+#[test]
+fn planar_structures_need_the_same_in_space() {
+    const SEEDS: u64 = 150;
+    let (mut planar, mut open, mut held) = (0, Vec::new(), 0);
+    for seed in 0..SEEDS {
+        let structure = flat(2 + seed as usize % 15, seed);
+        let remaining = explain(&structure, Reductions::ALL).expect("valid").remaining;
+        planar += usize::from(!remaining.is_empty() && remaining.iter().all(|block| block.is_planar()));
+        let reduced = judged(&structure, Reductions::ALL, "reduced").utilisation;
+        for (name, reductions) in variants() {
+            let full = judged(&structure, reductions, name).utilisation;
+            assert!(may_be_equal(reduced, full), "{seed} without {name}: {reduced:?} and {full:?}");
+            let largest = reduced.upper.max(full.upper);
+            let apart = largest - reduced.lower.min(full.lower);
+            if largest.is_finite() && apart <= 1e-6 * largest.max(1.0) {
+                held += 1;
+            } else if !(reduced.lower.is_infinite() && full.lower.is_infinite()) {
+                open.push((seed, name, reduced, full));
+            }
+        }
+    }
+    assert!(planar * 2 > SEEDS as usize, "{planar} planar structures");
+    assert!(held > 300, "{held} compared");
+    assert!(open.len() * 50 <= held, "{} of {held} left open: {open:?}", open.len());
+}
+
+/// Where a plane is hardly left, within what counts as planar or beyond it, what is proved is
+/// proved for the structure as it is.
+#[test]
+fn nearly_planar_structures_have_sound_brackets() {
+    let mut nearly = 0;
+    for seed in 0..40 {
+        let exact = flat(3 + seed as usize % 9, seed);
+        let from_exact = judged(&exact, Reductions::ALL, "exact").utilisation;
+        for off in [1e-11, 1e-10, 1e-9, 1e-8] {
+            let mut structure = exact.clone();
+            for (index, body) in structure.bodies.iter_mut().enumerate() {
+                body.com += Vec3::new(0.6, 0.64, -0.48) * (off * [1.0, -0.5, 0.3][index % 3]);
+            }
+            for contact in structure.contacts.iter_mut().step_by(2) {
+                contact.position += Vec3::new(-0.48, 0.6, 0.64) * off;
+            }
+            let remaining = explain(&structure, Reductions::ALL).expect("valid").remaining;
+            nearly += usize::from(remaining.iter().any(|block| block.is_planar()));
+            let reduced = judged(&structure, Reductions::ALL, "reduced").utilisation;
+            let space = Reductions { planar: false, ..Reductions::ALL };
+            let full = judged(&structure, space, "in space").utilisation;
+            assert!(may_be_equal(reduced, full), "{seed}, {off}: {reduced:?} and {full:?}");
+            if from_exact.upper.is_finite() && reduced.upper.is_finite() {
+                let room = 1e-5 * from_exact.upper.max(1.0);
+                assert!(reduced.lower <= from_exact.upper + room, "{seed}, {off}: {reduced:?} and {from_exact:?}");
+                assert!(from_exact.lower <= reduced.upper + room, "{seed}, {off}: {reduced:?} and {from_exact:?}");
+            }
+        }
+    }
+    assert!(nearly > 10, "{nearly} of these count as planar");
 }
 
 /// Rings that hang from the ground one beside the other, each of which some strength holds: as many blocks.

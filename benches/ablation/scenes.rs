@@ -23,6 +23,8 @@ pub fn all() -> Vec<Scene> {
         ("half of a truss welded", welded(truss([4, 2, 2]), 0.5)),
         ("suspension of 76", suspension()),
         ("wall 6 x 4", wall(6, 4)),
+        ("wall 8 x 8", wall(8, 8)),
+        ("planar truss 6 x 4", held(truss([6, 1, 4]))),
         ("tree of 200", tree(200)),
         ("truss with trees of 40", with_trees(truss([2, 2, 2]), 8, 5)),
         ("eight trusses", beside_each_other(&truss([2, 2, 2]), 8)),
@@ -34,6 +36,21 @@ pub fn all() -> Vec<Scene> {
         ("slender cubes", random(Kind::Slender, 40, 4)),
     ];
     scenes.into_iter().map(|(name, structure)| Scene { name, structure }).collect()
+}
+
+/// A truss of one layer, held at its lowest nodes: on the ground it would fall over.
+fn held(mut structure: Structure) -> Structure {
+    for contact in std::mem::take(&mut structure.contacts) {
+        let rotation = steadfast::spatial::Rotation::rotation_between(&Vec3::z(), &contact.normal).expect("upwards");
+        let frame = Pose::from_parts(contact.position.into(), rotation);
+        structure.connections.push(Connection {
+            parent: contact.against,
+            child: Anchor::Body(contact.body),
+            connector: 0,
+            frame,
+        });
+    }
+    structure
 }
 
 fn suspension() -> Structure {

@@ -38,11 +38,13 @@ pub enum LeftIn {
     Blocks,
     ClosedForm,
     Chains,
+    Planar,
     Everything,
 }
 
 impl LeftIn {
-    pub const ALL: [Self; 5] = [Self::RigidLinks, Self::Blocks, Self::ClosedForm, Self::Chains, Self::Everything];
+    pub const ALL: [Self; 6] =
+        [Self::RigidLinks, Self::Blocks, Self::ClosedForm, Self::Chains, Self::Planar, Self::Everything];
 
     const fn reductions(self) -> Reductions {
         let all = Reductions::ALL;
@@ -51,6 +53,7 @@ impl LeftIn {
             Self::Blocks => Reductions { blocks: false, ..all },
             Self::ClosedForm => Reductions { closed_form: false, ..all },
             Self::Chains => Reductions { chains: false, ..all },
+            Self::Planar => Reductions { planar: false, ..all },
             Self::Everything => Reductions::NONE,
         }
     }
@@ -64,7 +67,8 @@ impl LeftIn {
             Self::Blocks => found.remaining.len() > 1,
             Self::ClosedForm => found.closed_form_connections + found.closed_form_contacts > 0,
             Self::Chains => found.remaining.iter().any(chains),
-            Self::Everything => Self::ALL[..4].iter().any(|one| one.is_found_in(structure)),
+            Self::Planar => found.remaining.iter().any(Remaining::is_planar),
+            Self::Everything => Self::ALL[..5].iter().any(|one| one.is_found_in(structure)),
         }
     }
 }
@@ -134,6 +138,7 @@ impl Method {
             Self::Unreduced(LeftIn::Blocks, _) => "ours, not cut into blocks",
             Self::Unreduced(LeftIn::ClosedForm, _) => "ours, no closed form",
             Self::Unreduced(LeftIn::Chains, _) => "ours, chains left in",
+            Self::Unreduced(LeftIn::Planar, _) => "ours, planes in space",
             Self::Unreduced(LeftIn::Everything, _) => "ours, nothing left out",
             Self::Decide => "ours, verdict",
             Self::CarriedOver => "ours, carried over",

@@ -55,7 +55,7 @@ pub fn exact(rows: &[Row]) -> String {
 
 /// What every reduction saves at a gap of 1e-6, on the scenes that have something to leave out.
 pub fn reductions(rows: &[Row]) -> String {
-    let names = ["rigid links", "blocks", "closed form", "chains", "any"];
+    let names = ["rigid links", "blocks", "closed form", "chains", "planes", "any"];
     let mut text = "| scene | bodies | ours ms |".to_owned();
     for name in names {
         let _ = write!(text, " without {name} ms |");

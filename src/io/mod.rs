@@ -38,4 +38,6 @@ pub use read::{
 };
 pub use schema::{schema, schema_names};
 pub use turn::AxisAngle;
-pub use write::{Unwritable, write_certificate, write_check, write_configuration, write_plan, write_structure};
+pub use write::{
+    Unwritable, in_space_because, write_certificate, write_check, write_configuration, write_plan, write_structure,
+};

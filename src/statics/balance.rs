@@ -14,9 +14,10 @@ use super::bracket::Problem;
 use super::conic::Iterate;
 use super::loads::BodyLoad;
 use super::maps::relative;
-use super::network::{Network, flexibility_root};
+use super::network::Network;
 use super::program::{Cone, Group, Program, local_body};
 use super::second_order::determinant;
+use super::series::flexibility_root;
 use super::structure::Structure;
 
 /// Rounds of correction; each reduces the residual by the factorisation's accuracy.

@@ -8,9 +8,9 @@
 //! that comes back is believed: see `bracket`.
 
 use super::conic::Iterate;
-use super::network::{Network, has_long_chains};
+use super::network::Network;
 use super::parts::{Part, parts};
-use super::planar::Planar;
+use super::planar::{NotPlanar, Planar};
 use super::program::Program;
 use super::reductions::Reductions;
 use super::respect::respect_unlimited;
@@ -64,21 +64,24 @@ impl<'p> InteriorPoint<'p> {
         let bodies = program.scales.force.len();
         let parts = parts(program);
         let tie = |row: usize| program.preload[row];
-        let in_series = reductions.chains && has_long_chains(program);
-        let planar = if reductions.planar && !in_series { Planar::new(program, &parts) } else { None };
-        let (system, residuals) = if let Some(planar) = planar {
-            let network = Network::plain(bodies, pairs(&planar.parts));
-            let preload = planar.preload.clone();
-            let mut system = System::new(&planar.parts, &planar.loads, preload, tie, network, inset, start);
-            let residuals = system.compare();
-            (Balances::Plane(system, planar), residuals)
-        } else {
-            let by_body = |rows: &[f64]| rows[..6 * bodies].as_chunks::<6>().0.to_vec();
-            let network = if in_series { Network::new(program, true) } else { Network::plain(bodies, pairs(&parts)) };
-            let (loads, preload) = (by_body(&program.load), by_body(&program.preload));
-            let mut system = System::new(&parts, &loads, preload, tie, network, inset, start);
-            let residuals = system.compare();
-            (Balances::Space(system), residuals)
+        let (system, residuals) = match Planar::new(program, &parts, reductions) {
+            Ok(planar) => {
+                let network = Network::plain(bodies, pairs(&planar.parts));
+                let preload = planar.preload.clone();
+                let mut system = System::new(&planar.parts, &planar.loads, preload, tie, network, inset, start);
+                let residuals = system.compare();
+                (Balances::Plane(system, planar), residuals)
+            }
+            Err(why) => {
+                let by_body = |rows: &[f64]| rows[..6 * bodies].as_chunks::<6>().0.to_vec();
+                let in_series = why == NotPlanar::Chains;
+                let network =
+                    if in_series { Network::new(program, true) } else { Network::plain(bodies, pairs(&parts)) };
+                let (loads, preload) = (by_body(&program.load), by_body(&program.preload));
+                let mut system = System::new(&parts, &loads, preload, tie, network, inset, start);
+                let residuals = system.compare();
+                (Balances::Space(system), residuals)
+            }
         };
         Self { program, system, residuals }
     }

@@ -6,8 +6,9 @@
 //! 1. `blocks` cuts the structure where a wrench is known from balance, `loads`
 //!    lumps what hangs there;
 //! 2. `closed_form` answers for bridges, with the connectors' `demand`;
-//! 3. `program` states every other block as a second-order cone program and
-//!    `interior_point` solves it, with `conic` behind it, a general solver;
+//! 3. `program` states every other block as a second-order cone program, `planar` finds
+//!    those that lie in a plane, and `interior_point` solves it, with `conic` behind it, a
+//!    general solver; `solve_block` asks them in turn;
 //! 4. `bracket` proves bounds from the fields that come back, after `balance`
 //!    has made the wrenches balance; `collapse` proves that no strength helps;
 //! 5. `distribution`, only where it is asked for, chooses among the fields that hold.
@@ -16,11 +17,15 @@
 //! files or plans.
 
 mod answer;
+mod as_one;
 mod assess;
 mod assessment;
+mod attempts;
 mod balance;
+mod best;
 mod blocks;
 mod bracket;
+mod chains;
 mod closed_form;
 mod clusters;
 mod collapse;
@@ -65,7 +70,7 @@ mod validate;
 pub use assess::{assess, assess_reduced};
 pub use assessment::{Assessment, Bracket, ConnectionState, Distribution, LeftOut, Question, Verdict};
 pub use connector::{Connector, Model};
-pub use explain::{Explanation, Remaining, explain};
+pub use explain::{Explanation, InSpace, Remaining, explain};
 pub use near::{Memory, NotNear, assess_keeping, assess_near};
 pub use patch::face_forces;
 pub use reductions::Reductions;

@@ -1,7 +1,10 @@
 //! Springs in series, as triangles: `R'R = sum B'B` one spring after another, by
-//! reflections, so that nothing is squared.
+//! reflections, so that nothing is squared; and what such triangles are the inverse of.
 
 use nalgebra::{SMatrix, SVector};
+
+/// Least pivot of a chain's root, as a share of the largest.
+const LEAST_PIVOT: f64 = 1e-14;
 
 /// The reflections that bring `[R; B]`, R an upper triangle, to a triangle again.
 pub(super) struct Stacked<const D: usize> {
@@ -45,6 +48,42 @@ impl<const D: usize> Stacked<D> {
         }
         top
     }
+}
+
+/// The inverse of an upper triangle; where that is singular to rounding, of one
+/// that is not.
+pub(super) fn inverse<const D: usize>(triangle: &SMatrix<f64, D, D>) -> SMatrix<f64, D, D> {
+    let largest = triangle.diagonal().amax();
+    let mut regular = *triangle;
+    for k in 0..D {
+        let pivot = regular[(k, k)];
+        if !(pivot.abs() > LEAST_PIVOT * largest) {
+            regular[(k, k)] = (LEAST_PIVOT * largest).max(f64::MIN_POSITIVE.sqrt()).copysign(pivot);
+        }
+    }
+    regular.solve_upper_triangular(&SMatrix::identity()).unwrap_or_else(SMatrix::zeros)
+}
+
+/// The root G of the inverse of a link's stiffness, `K G G' = 1`, where nothing
+/// better than K itself is known.
+pub(super) fn flexibility_root<const D: usize>(stiffness: &SMatrix<f64, D, D>) -> SMatrix<f64, D, D> {
+    // Forces and torques differ in unit: scale the diagonal to 1 first.
+    let unit = stiffness.diagonal().map(|d| if d > 0.0 { d.sqrt().recip() } else { 1.0 });
+    let mut factor =
+        SMatrix::<f64, D, D>::from_fn(|r, c| if r >= c { stiffness[(r, c)] * unit[r] * unit[c] } else { 0.0 });
+    for c in 0..D {
+        let pivot = factor[(c, c)].max(LEAST_PIVOT).sqrt();
+        factor[(c, c)] = pivot;
+        for r in c + 1..D {
+            factor[(r, c)] /= pivot;
+        }
+        for d in c + 1..D {
+            for r in d..D {
+                factor[(r, d)] -= factor[(r, c)] * factor[(d, c)];
+            }
+        }
+    }
+    SMatrix::<f64, D, D>::from_diagonal(&unit) * inverse::<D>(&factor.transpose())
 }
 
 #[cfg(test)]

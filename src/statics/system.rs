@@ -13,11 +13,12 @@
 use nalgebra::SMatrix;
 
 use super::element::{Element, End, Rows};
-use super::network::{Network, flexibility_root};
+use super::network::Network;
 use super::normal::{Normal, Solution};
 use super::parts::{Part, START};
 use super::program::Cone;
 use super::second_order::dot;
+use super::series::flexibility_root;
 use super::stiffness::Matrix;
 
 /// Imbalance of a step, as a share of the complementarity that is left, above which

@@ -1,6 +1,6 @@
 //! `plan check --explain`: what was left out of a scene and why, in words.
 
-use steadfast::io::NamedStructure;
+use steadfast::io::{NamedStructure, in_space_because};
 use steadfast::statics::{Explanation, Remaining};
 
 use crate::table::table;
@@ -36,7 +36,28 @@ pub fn explained(named: &NamedStructure, explanation: &Explanation) -> String {
     if blocks.len() > LISTED {
         text.push_str(&wrapped(&format!("and {} more blocks, none larger", blocks.len() - LISTED)));
     }
+    text.push_str(&solved_in_space(named, blocks));
     text
+}
+
+/// Why blocks have six equations a body, those with the same reason in one item.
+fn solved_in_space(named: &NamedStructure, blocks: &[Remaining]) -> String {
+    let mut reasons: Vec<(String, usize)> = Vec::new();
+    for why in blocks.iter().filter_map(|block| block.in_space) {
+        let why = in_space_because(named, why);
+        match reasons.iter_mut().find(|(known, _)| *known == why) {
+            Some((_, blocks)) => *blocks += 1,
+            None => reasons.push((why, 1)),
+        }
+    }
+    let item = |(why, blocks): &(String, usize)| {
+        wrapped(&format!("{} with six equations a body: {why}", count(*blocks, "block", "blocks")))
+    };
+    let listed: String = reasons.iter().take(LISTED).map(item).collect();
+    match reasons.len().checked_sub(LISTED) {
+        None | Some(0) => listed,
+        Some(more) => listed + &wrapped(&format!("and {more} more reasons of the same kinds")),
+    }
 }
 
 fn left_out(named: &NamedStructure, explanation: &Explanation) -> Vec<String> {
@@ -96,17 +117,28 @@ fn left_out(named: &NamedStructure, explanation: &Explanation) -> Vec<String> {
             count(chains, "chain", "chains"),
         ),
     );
+    let planar = sum(|block| usize::from(block.is_planar()));
+    tell(
+        planar,
+        format!(
+            "{} in a plane ({}): no force across it and no torque within it, so three equations a body; points in mirrored pairs are one, and a point's friction cone is two inequalities",
+            count(planar, "block lies", "blocks lie"),
+            count(sum(|block| if block.is_planar() { block.bodies } else { 0 }), "body", "bodies"),
+        ),
+    );
     if !blocks.is_empty() {
         if sum(|block| block.friction_cones) == 0 {
             let why = match structure.contacts.iter().any(|contact| contact.friction > 0.0) {
                 _ if structure.contacts.is_empty() => "there is no contact",
-                true => "no contact with friction is left in what is solved",
+                true => "none with friction is left in what is solved, or only in planes",
                 false => "no contact has friction",
             };
             items.push(format!("friction cones of contacts: {why}"));
         }
         if explanation.is_linear() {
-            items.push("second-order cones: only boxes and no friction are left, a linear program".to_owned());
+            items.push(
+                "second-order cones: boxes, no friction or friction in planes are left, a linear program".to_owned(),
+            );
         } else if sum(|block| block.inequalities) == 0 {
             items.push("linear inequalities: no box and no frictionless point is left".to_owned());
         }

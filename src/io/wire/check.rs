@@ -175,6 +175,11 @@ pub(crate) struct RemainingBlock {
     pub(crate) unknown_wrenches: u64,
     /// Equations of balance that are factorised.
     pub(crate) equations: u64,
+    /// Whether it is its own mirror image in a plane, body by body: three equations a body.
+    pub(crate) planar: bool,
+    /// Why it has six, otherwise.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) in_space_because: Option<String>,
     /// Friction cones of contacts.
     pub(crate) friction_cones: u64,
     /// Second-order cones of connectors.

@@ -3,7 +3,7 @@
 use super::super::document::NamedStructure;
 use super::super::wire::{self, Real};
 use super::{bracket, vector};
-use crate::statics::{Assessment, ConnectionState, Distribution, Explanation, Remaining, Verdict};
+use crate::statics::{Assessment, ConnectionState, Distribution, Explanation, InSpace, Remaining, Verdict};
 
 /// What a margin is found without.
 const NOT_ASKED_FOR: [&str; 2] = ["secondary objective", "distribution of stress"];
@@ -45,12 +45,12 @@ pub(super) fn wire(
             solved_blocks: left_out.solved_blocks as u64,
             largest_block_bodies: left_out.largest_block_bodies as u64,
         },
-        explanation: explanation.map(explained),
+        explanation: explanation.map(|explanation| explained(named, explanation)),
         seconds: Real(seconds),
     }
 }
 
-fn explained(explanation: &Explanation) -> wire::Explanation {
+fn explained(named: &NamedStructure, explanation: &Explanation) -> wire::Explanation {
     wire::Explanation {
         fixed_bodies: explanation.fixed_bodies as u64,
         merged_bodies: explanation.merged_bodies as u64,
@@ -62,11 +62,11 @@ fn explained(explanation: &Explanation) -> wire::Explanation {
         unloaded_blocks: explanation.unloaded_blocks as u64,
         linear: explanation.is_linear(),
         not_asked_for: NOT_ASKED_FOR.map(str::to_owned).to_vec(),
-        remaining: explanation.remaining.iter().map(remaining).collect(),
+        remaining: explanation.remaining.iter().map(|block| remaining(named, block)).collect(),
     }
 }
 
-fn remaining(block: &Remaining) -> wire::RemainingBlock {
+fn remaining(named: &NamedStructure, block: &Remaining) -> wire::RemainingBlock {
     wire::RemainingBlock {
         bodies: block.bodies as u64,
         connections: block.connections as u64,
@@ -75,9 +75,26 @@ fn remaining(block: &Remaining) -> wire::RemainingBlock {
         bodies_in_chains: block.bodies_in_chains as u64,
         unknown_wrenches: block.unknown_wrenches as u64,
         equations: block.equations as u64,
+        planar: block.is_planar(),
+        in_space_because: block.in_space.map(|why| in_space_because(named, why)),
         friction_cones: block.friction_cones as u64,
         connector_cones: block.connector_cones as u64,
         inequalities: block.inequalities as u64,
+    }
+}
+
+/// Why a block is solved in space, in words.
+pub fn in_space_because(named: &NamedStructure, why: InSpace) -> String {
+    let without_image = |kind: &str, id: &str| {
+        format!("{kind} {id} stands askew to the plane, or beside it without its mirror image opposite")
+    };
+    match why {
+        InSpace::NotAskedFor => "planar blocks are solved like all others".to_owned(),
+        InSpace::Chains => "its long chains are condensed, which leaves less".to_owned(),
+        InSpace::Bodies => "no plane holds all its centres of mass".to_owned(),
+        InSpace::Loads => "a load or a preload acts across the plane of its centres of mass".to_owned(),
+        InSpace::Connection(i) => without_image("connection", &named.connections[i]),
+        InSpace::Contact(i) => without_image("contact", &named.contacts[i]),
     }
 }
 

@@ -11,6 +11,7 @@ mod sequence;
 mod structure;
 
 pub(super) use certificate::checksum as certificate_checksum;
+pub use check::in_space_because;
 
 use std::fmt;
 

@@ -13,8 +13,9 @@ use crate::spatial::{Twist, Vec3, Wrench};
 use super::super::balance::residuals;
 use super::super::bracket::Problem;
 use super::super::maps::relative;
-use super::super::network::{Network, flexibility_root};
+use super::super::network::Network;
 use super::super::program::local_body;
+use super::super::series::flexibility_root;
 use super::field::{Field, face};
 use super::room::Rooms;
 
