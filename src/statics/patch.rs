@@ -210,8 +210,8 @@ fn in_proportion(
         return (torsion <= negligible).then(|| NormalForce { total: Bracket::exact(total), twist: slide });
     }
     let left = (friction * total - shear) * arm_on_edge(&centre, points);
-    (torsion <= negligible || torsion <= left * NEARLY)
-        .then(|| NormalForce { total: bending.total, twist: bending.twist })
+    let twisted = torsion <= negligible || torsion <= left * NEARLY;
+    twisted.then_some(NormalForce { total: bending.total, twist: bending.twist })
 }
 
 /// Distance in m of the nearer of the two outermost points in a row with `centre`, a point of the
