@@ -70,9 +70,10 @@ pub(super) fn least_normal_force(wrench: &Wrench, friction: f64, points: &[[f64;
     }
     let negligible = DATA * scale;
     let in_plane = wanted[0].abs().max(wanted[1].abs()).max(wanted[4].abs());
-    let frictional = friction > 0.0 && in_plane > negligible;
+    // What friction takes up it multiplies.
+    let frictional = friction > 0.0 && in_plane > negligible * friction.min(1.0);
     let bending = centre_of_pressure(wrench, points);
-    if bending.total.upper.is_infinite() || (in_plane <= negligible && !frictional) {
+    if bending.total.upper.is_infinite() || (!frictional && in_plane <= negligible) {
         return bending;
     }
     if !frictional {
@@ -80,7 +81,7 @@ pub(super) fn least_normal_force(wrench: &Wrench, friction: f64, points: &[[f64;
         let slide = Twist::new(Vec3::new(-wanted[0], -wanted[1], 0.0), Vec3::z() * (-wanted[4] / lever));
         return NormalForce { total: Bracket::exact(f64::INFINITY), twist: slide };
     }
-    if let Some(proportional) = in_proportion(wrench, friction, points, &bending, negligible * lever) {
+    if let Some(proportional) = in_proportion(wrench, friction, points, &bending) {
         return proportional;
     }
     iterated(&wanted, lever, friction, points, bending)
@@ -188,14 +189,8 @@ fn centre_of_pressure(wrench: &Wrench, points: &[[f64; 2]]) -> NormalForce {
 /// in proportion to pressure, which twists the face about the centre of pressure not at all, and
 /// where bending decides, with the two points that it leaves under pressure slid around that
 /// centre as far as friction allows. `None` where that does not give the torsion that is
-/// wanted, up to `negligible` in N m.
-fn in_proportion(
-    wrench: &Wrench,
-    friction: f64,
-    points: &[[f64; 2]],
-    bending: &NormalForce,
-    negligible: f64,
-) -> Option<NormalForce> {
+/// wanted.
+fn in_proportion(wrench: &Wrench, friction: f64, points: &[[f64; 2]], bending: &NormalForce) -> Option<NormalForce> {
     let (f, m) = (&wrench.force, &wrench.torque);
     let shear = f.xy().norm();
     let rubbing = shear / friction;
@@ -205,6 +200,8 @@ fn in_proportion(
     }
     let centre = Vector2::new(-m.y, m.x) / total;
     let torsion = (m.z - (centre.x * f.y - centre.y * f.x)).abs();
+    // More pressure by a share DATA would hold it.
+    let negligible = DATA * friction * total * size(points);
     if rubbing > bending.total.upper {
         let slide = Twist::new(Vec3::new(-f.x, -f.y, 0.0) / rubbing / (friction * friction) + Vec3::z(), Vec3::zeros());
         return (torsion <= negligible).then(|| NormalForce { total: Bracket::exact(total), twist: slide });
@@ -499,7 +496,7 @@ mod tests {
             let centre = [-wrench.torque.y / total, wrench.torque.x / total];
             let twist = if n % 2 == 0 { 0.0 } else { 0.05 * next() };
             wrench.torque.z = centre[0] * shear[1] - centre[1] * shear[0] + twist;
-            let Some(closed) = in_proportion(&wrench, 0.4, &points, &bending, 1e-13) else { continue };
+            let Some(closed) = in_proportion(&wrench, 0.4, &points, &bending) else { continue };
             *(if closed.total.upper > bending.total.upper { &mut rubbed } else { &mut bent }) += 1;
             let (f, m) = (wrench.force, wrench.torque);
             let wanted = Rows::new(f.x, f.y, m.x / 0.05, m.y / 0.05, m.z / 0.05);
