@@ -130,10 +130,14 @@ fn utilisation(connector: &Connector, wrench: &Wrench) -> (f64, f64) {
 }
 
 /// The preload of a patch, as a cone program of its own: forces `(x, y, z)` per
-/// point that add up to `wrench` and the preload. `None` where the solver gives up.
+/// point that add up to `wrench` and the preload, shear and torsion over the friction
+/// so that the program stays well scaled. `None` where the solver gives up.
 pub fn least_preload(wrench: &Wrench, friction: f64, points: &[[f64; 2]]) -> Option<f64> {
     let lever = points.iter().map(|p| p[0].hypot(p[1])).fold(0.0, f64::max).max(f64::MIN_POSITIVE);
-    let scale = wrench.force.norm() + wrench.torque.norm() / lever;
+    let grip = if friction > 0.0 { friction } else { 1.0 };
+    let force = wrench.force.component_div(&Vec3::new(grip, grip, 1.0));
+    let torque = wrench.torque.component_div(&Vec3::new(1.0, 1.0, grip));
+    let scale = force.norm() + torque.norm() / lever;
     if scale == 0.0 {
         return Some(0.0);
     }
@@ -145,7 +149,7 @@ pub fn least_preload(wrench: &Wrench, friction: f64, points: &[[f64; 2]]) -> Opt
             let force = Vec3::ith(k, 1.0);
             let torque = arm.cross(&force);
             let mut column: Vec<(usize, f64)> = force.iter().chain(&torque).copied().enumerate().collect();
-            column.push((height + (k + 1) % 3, if k == 2 { -friction } else { -1.0 }));
+            column.push((height + (k + 1) % 3, if k == 2 { -friction / grip } else { -1.0 }));
             columns.push(column);
         }
         height += 3;
@@ -162,7 +166,7 @@ pub fn least_preload(wrench: &Wrench, friction: f64, points: &[[f64; 2]]) -> Opt
     let width = columns.len();
     let matrix = CscMatrix::new(height, width, starts, rows, values);
     let mut rhs = vec![0.0; height];
-    let (f, m) = (wrench.force / scale, wrench.torque / (scale * lever));
+    let (f, m) = (force / scale, torque / (scale * lever));
     rhs[..6].copy_from_slice(&[f.x, f.y, f.z, m.x, m.y, m.z]);
     let mut objective = vec![0.0; width];
     objective[width - 1] = 1.0;
