@@ -3,7 +3,8 @@
 use crate::spatial::Vec3;
 use crate::statics::{Connector, Model};
 
-use super::catalogue::{BodyType, Catalogue, LatticeType, ModuleType, Shape};
+use super::catalogue::{BodyType, Catalogue, LatticeType, ModuleType};
+use super::shape::Shape;
 
 /// Edge length in m. Published: M-Blocks are cubes of 50 mm (J. W. Romanishin,
 /// K. Gilpin, D. Rus: "M-Blocks: momentum-driven, magnetic modular robots",

@@ -3,15 +3,7 @@
 use crate::spatial::Vec3;
 use crate::statics::{Connector, Model};
 
-/// A convex solid, centred on its own frame.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Shape {
-    /// A box with these half extents in m.
-    Cuboid {
-        /// Half of the edge lengths along x, y and z in m, positive.
-        half_extents: Vec3,
-    },
-}
+use super::shape::Shape;
 
 /// One rigid body of a module type.
 #[derive(Clone, Debug, PartialEq)]

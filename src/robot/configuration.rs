@@ -6,9 +6,10 @@ use petgraph::unionfind::UnionFind;
 
 use crate::spatial::{Pose, Vec3};
 
-use super::catalogue::{Catalogue, ModuleType, Shape};
+use super::catalogue::{Catalogue, ModuleType};
 use super::lattice::{Face, Placement};
 use super::occupancy::{Occupancy, connection};
+use super::shape::Shape;
 
 /// A module of a configuration.
 #[derive(Clone, Debug, PartialEq)]

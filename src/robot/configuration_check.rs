@@ -3,10 +3,10 @@
 
 use std::collections::HashMap;
 
-use super::catalogue::Shape;
 use super::configuration::{Configuration, FaceConnection, Port};
 use super::lattice::neighbour;
 use super::problem::{Fault, Findings, Part, Problem};
+use super::shape::Shape;
 
 impl Configuration {
     /// Everything that is wrong with the configuration, not counting its

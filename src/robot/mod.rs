@@ -13,14 +13,16 @@ mod configuration_check;
 mod lattice;
 mod occupancy;
 mod problem;
+mod shape;
 #[cfg(test)]
 mod tests;
 
 pub use built_in::BUILT_IN;
-pub use catalogue::{BodyType, Catalogue, LatticeType, ModuleType, Shape};
+pub use catalogue::{BodyType, Catalogue, LatticeType, ModuleType};
 pub use configuration::{
     Configuration, Environment, FaceConnection, Goal, Ground, Matching, Module, ModuleLoad, Obstacle, Port, Requirement,
 };
 pub use lattice::{Cell, Face, Orientation, Placement, neighbour};
 pub use occupancy::Occupancy;
 pub use problem::{Fault, Part, Problem};
+pub use shape::Shape;
