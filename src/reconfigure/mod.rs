@@ -16,6 +16,7 @@ mod domain;
 mod goal;
 mod heuristic;
 mod layout;
+pub mod linkage;
 mod local;
 mod moves;
 mod oracle;
