@@ -3,6 +3,8 @@
 //! Knows which ports hold, which bodies touch and where; knows neither actions nor what the oracle
 //! makes of the structure.
 
+use std::fmt;
+
 use crate::geometry::{BroadPhase, ContactPatch, Solid, TOUCH, contact, ground_contact};
 use crate::robot::ModuleType;
 use crate::robot::linkage::{Connection, Linkage, Port, frame_between};
@@ -324,5 +326,15 @@ fn add_contacts(
     for position in patch.points {
         assembly.structure.contacts.push(Contact { body, against, position, normal: patch.normal, friction });
         assembly.contacts.push((assembly.bodies[body], touched));
+    }
+}
+
+impl fmt::Display for Touched {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Body(body) => write!(f, "body {} of module number {}", body.body, body.module),
+            Self::Obstacle(index) => write!(f, "obstacle number {index}"),
+            Self::Ground => f.write_str("the ground"),
+        }
     }
 }

@@ -4,5 +4,6 @@ mod action;
 pub mod assembly;
 #[cfg(test)]
 mod assembly_tests;
+pub mod replay;
 
 pub use action::{Action, Half};
