@@ -32,11 +32,14 @@ impl Catalogue {
             findings.add(part, "com", Fault::NotSymmetric);
         }
         findings.positive(part, "pitch", &[lattice.pitch]);
-        let Shape::Cuboid { half_extents } = &body.shape;
-        findings.positive(part, "half_extents", half_extents.as_slice());
+        findings.positive(part, "shape", &body.shape.measures());
         let off = |h: &f64| (2.0 * h - lattice.pitch).abs() > SAME_LENGTH * lattice.pitch;
-        if lattice.pitch > 0.0 && half_extents.iter().all(|h| *h > 0.0) && half_extents.iter().any(off) {
-            findings.add(part, "half_extents", Fault::NotACell);
+        let is_cell = match &body.shape {
+            Shape::Cuboid { half_extents } => !half_extents.iter().any(|h| *h > 0.0 && off(h)),
+            Shape::Cylinder { .. } | Shape::Ball { .. } | Shape::Convex(_) => false,
+        };
+        if lattice.pitch > 0.0 && !is_cell {
+            findings.add(part, "shape", Fault::NotACell);
         }
         if findings.in_range(part, "face", lattice.face, self.connectors.len())
             && !is_symmetric(&self.connectors[lattice.face].model)

@@ -6,7 +6,7 @@ use std::collections::HashMap;
 use super::configuration::{Configuration, FaceConnection, Port};
 use super::lattice::neighbour;
 use super::problem::{Fault, Findings, Part, Problem};
-use super::shape::Shape;
+use super::terrain::Terrain;
 
 impl Configuration {
     /// Everything that is wrong with the configuration, not counting its
@@ -32,8 +32,9 @@ impl Configuration {
         }
         for (i, obstacle) in environment.obstacles.iter().enumerate() {
             let part = Part::Obstacle(i);
-            let Shape::Cuboid { half_extents } = &obstacle.shape;
-            findings.positive(part, "half_extents", half_extents.as_slice());
+            if let Terrain::Solid(shape) = &obstacle.shape {
+                findings.positive(part, "shape", &shape.measures());
+            }
             findings.finite(part, "position", obstacle.pose.translation.vector.as_slice());
             findings.finite(part, "rotation", obstacle.pose.rotation.coords.as_slice());
             findings.not_negative(part, "friction", &[obstacle.friction]);

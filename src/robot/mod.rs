@@ -10,19 +10,25 @@ mod catalogue;
 mod catalogue_check;
 mod configuration;
 mod configuration_check;
+mod environment;
+mod hull;
 mod lattice;
 mod occupancy;
 mod problem;
 mod shape;
+mod terrain;
 #[cfg(test)]
 mod tests;
 
 pub use built_in::BUILT_IN;
 pub use catalogue::{BodyType, Catalogue, LatticeType, ModuleType};
 pub use configuration::{
-    Configuration, Environment, FaceConnection, Goal, Ground, Matching, Module, ModuleLoad, Obstacle, Port, Requirement,
+    Configuration, FaceConnection, Goal, Matching, Module, ModuleLoad, Port, Requirement,
 };
+pub use environment::{Environment, Ground, Obstacle};
+pub use hull::{Hull, HullFace};
 pub use lattice::{Cell, Face, Orientation, Placement, neighbour};
 pub use occupancy::Occupancy;
 pub use problem::{Fault, Part, Problem};
-pub use shape::Shape;
+pub use shape::{LARGEST, Shape, ShapeFault};
+pub use terrain::{HeightField, MOST_HEIGHTS, MOST_TRIANGLES, Mesh, Terrain};
