@@ -79,7 +79,7 @@ prop_compose! {
     ) -> Obstacle {
         let rotation = Rotation::from_euler_angles(turn[0], turn[1], turn[2]);
         Obstacle {
-            shape: Shape::Cuboid { half_extents: Vec3::from(half) },
+            shape: Shape::Cuboid { half_extents: Vec3::from(half) }.into(),
             pose: Pose::from_parts(Vec3::from(at).into(), rotation),
             friction: friction.abs(),
         }

@@ -12,6 +12,7 @@ use super::decode::decode;
 use super::faults;
 use super::names::Names;
 use super::rotation::vector;
+use super::terrain;
 use crate::robot::{BUILT_IN, BodyType, Catalogue, LatticeType, ModuleType, Shape};
 use crate::spatial::{Pose, Vec3};
 
@@ -158,16 +159,16 @@ fn body(wire: &wire::ModuleType, place: &Place<'_>, findings: &mut Findings) -> 
     Some(BodyType { name: body.name.clone(), mass: body.mass_kg.0, com, shape, shape_pose: Pose::identity() })
 }
 
-/// The shape, if this version knows how to collide it.
+/// The shape of a body.
 pub(super) fn shape(wire: &wire::Shape, place: &Place<'_>, findings: &mut Findings) -> Option<Shape> {
     match wire {
         wire::Shape::Cuboid { half_extents_m } => {
             Some(Shape::Cuboid { half_extents: Vec3::from(half_extents_m.map(|half| half.0)) })
         }
-        wire::Shape::Cylinder { .. } | wire::Shape::Ball { .. } => {
-            let hint = "use a \"cuboid\"".to_string();
-            findings.add(place, codes::UNSUPPORTED, "only cuboids are planned with in this version", hint);
-            None
+        wire::Shape::Cylinder { radius_m, height_m } => {
+            Some(Shape::Cylinder { radius: radius_m.0, height: height_m.0 })
         }
+        wire::Shape::Ball { radius_m } => Some(Shape::Ball { radius: radius_m.0 }),
+        wire::Shape::Convex { points_m } => terrain::hull(points_m, &place.key("convex").key("points_m"), findings),
     }
 }

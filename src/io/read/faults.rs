@@ -47,11 +47,17 @@ fn field<'a>(part: &Place<'a>, name: &str) -> Place<'a> {
         "hinge" => &["hinge"],
         "module_type" => &["type"],
         "placement" => &["cell"],
-        "half_extents" => return part.key("bodies").index(0).key("shape").key("cuboid").key("half_extents_m"),
+        "shape" if part.key("bodies").node().is_some() => return measures(&part.key("bodies").index(0).key("shape")),
         "com" => return part.key("bodies").index(0).key("com_m"),
         _ => &[],
     };
     keys.iter().fold(part.clone(), |place, key| place.key(key))
+}
+
+/// Where the measures of a shape are.
+fn measures<'a>(shape: &Place<'a>) -> Place<'a> {
+    let cuboid = shape.key("cuboid");
+    if cuboid.node().is_some() { cuboid.key("half_extents_m") } else { shape.clone() }
 }
 
 fn report(problem: &Problem, place: &Place<'_>, configuration: Option<&Configuration>, findings: &mut Findings) {

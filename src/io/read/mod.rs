@@ -18,7 +18,9 @@ mod outcome;
 mod plan;
 mod rotation;
 mod sequence;
+mod stl_and_obj;
 mod structure;
+mod terrain;
 
 use super::certificate_document::CertificateDocument;
 use super::diagnostics::Diagnostics;

@@ -71,7 +71,7 @@ pub(crate) struct BodyType {
     pub(crate) shape: Shape,
 }
 
-/// A convex solid, centred on its own frame.
+/// A convex solid; all but a hull are centred on their own frame.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase", deny_unknown_fields)]
 pub(crate) enum Shape {
@@ -91,6 +91,12 @@ pub(crate) enum Shape {
     Ball {
         /// Radius.
         radius_m: Positive,
+    },
+    /// The convex hull of points.
+    Convex {
+        /// At least four points that do not lie in a plane, in the frame of the shape.
+        #[schemars(length(min = 4, max = 256))]
+        points_m: Vec<[Real; 3]>,
     },
 }
 

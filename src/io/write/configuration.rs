@@ -4,7 +4,7 @@ use super::super::wire::{self, NonNegative, Positive, Real};
 use super::connector::connectors;
 use super::{vector, xyzw};
 use crate::robot::{
-    Catalogue, Configuration, Environment, FaceConnection, Goal, Module, ModuleType, Orientation, Port, Shape,
+    Catalogue, Configuration, Environment, FaceConnection, Goal, Module, ModuleType, Orientation, Port, Shape, Terrain,
 };
 use crate::spatial::{Rotation, Vec3};
 
@@ -78,7 +78,7 @@ fn module(configuration: &Configuration, module: &Module) -> wire::Module {
 
 fn environment(environment: &Environment) -> wire::Environment {
     let obstacles = environment.obstacles.iter().map(|obstacle| wire::Obstacle {
-        shape: shape(&obstacle.shape),
+        shape: terrain(&obstacle.shape),
         position_m: vector(obstacle.pose.translation.vector),
         rotation_xyzw: (obstacle.pose.rotation != Rotation::identity()).then(|| xyzw(&obstacle.pose.rotation)),
         friction: NonNegative(obstacle.friction),
@@ -94,8 +94,44 @@ fn environment(environment: &Environment) -> wire::Environment {
 }
 
 fn shape(shape: &Shape) -> wire::Shape {
-    let Shape::Cuboid { half_extents } = shape;
-    wire::Shape::Cuboid { half_extents_m: [half_extents.x, half_extents.y, half_extents.z].map(Positive) }
+    match shape {
+        Shape::Cuboid { half_extents } => wire::Shape::Cuboid { half_extents_m: positive(half_extents) },
+        Shape::Cylinder { radius, height } => {
+            wire::Shape::Cylinder { radius_m: Positive(*radius), height_m: Positive(*height) }
+        }
+        Shape::Ball { radius } => wire::Shape::Ball { radius_m: Positive(*radius) },
+        Shape::Convex(hull) => wire::Shape::Convex { points_m: hull.points().iter().copied().map(vector).collect() },
+    }
+}
+
+/// The shape of an obstacle, with a mesh in full, so that the file stands on its own.
+fn terrain(terrain: &Terrain) -> wire::Terrain {
+    match terrain {
+        Terrain::Solid(Shape::Cuboid { half_extents }) => {
+            wire::Terrain::Cuboid { half_extents_m: positive(half_extents) }
+        }
+        Terrain::Solid(Shape::Cylinder { radius, height }) => {
+            wire::Terrain::Cylinder { radius_m: Positive(*radius), height_m: Positive(*height) }
+        }
+        Terrain::Solid(Shape::Ball { radius }) => wire::Terrain::Ball { radius_m: Positive(*radius) },
+        Terrain::Solid(Shape::Convex(hull)) => {
+            wire::Terrain::Convex { points_m: hull.points().iter().copied().map(vector).collect() }
+        }
+        Terrain::HalfSpace => wire::Terrain::Plane {},
+        Terrain::HeightField(field) => wire::Terrain::HeightField {
+            cell_m: field.cell().map(Positive),
+            heights_m: field.heights().iter().map(|row| row.iter().copied().map(Real).collect()).collect(),
+        },
+        Terrain::Mesh(mesh) => wire::Terrain::Mesh(wire::Mesh {
+            vertices_m: Some(mesh.vertices().iter().copied().map(vector).collect()),
+            triangles: Some(mesh.triangles().to_vec()),
+            ..wire::Mesh::default()
+        }),
+    }
+}
+
+fn positive(v: &Vec3) -> [Positive; 3] {
+    [v.x, v.y, v.z].map(Positive)
 }
 
 /// By name if it is built in, in full otherwise, so that the file stands on its own.
