@@ -131,10 +131,18 @@ pub(super) fn intersection(a: Vec<Point2>, b: Vec<Point2>, tolerance: f64) -> Ve
             None => common_of_segments([a0, a1], [b0, b1], tolerance),
         },
         (&[p], &[from, to]) | (&[from, to], &[p]) => {
-            if distance_to_segment(&p, from, to) <= tolerance { vec![p] } else { Vec::new() }
+            if distance_to_segment(&p, from, to) <= tolerance {
+                vec![p]
+            } else {
+                Vec::new()
+            }
         }
         (&[p], &[q]) => {
-            if (p - q).norm() <= tolerance { vec![p] } else { Vec::new() }
+            if (p - q).norm() <= tolerance {
+                vec![p]
+            } else {
+                Vec::new()
+            }
         }
         _ => Vec::new(),
     }

@@ -65,21 +65,15 @@ fn along(a: &Figure, b: &Figure, direction: Vec3) -> Separation {
     }
 }
 
-fn of_cuboids<'a>(
-    a: &'a Solid,
-    half_a: Vec3,
-    b: &'a Solid,
-    half_b: Vec3,
-) -> impl Iterator<Item = Separation> + 'a {
+fn of_cuboids<'a>(a: &'a Solid, half_a: Vec3, b: &'a Solid, half_b: Vec3) -> impl Iterator<Item = Separation> + 'a {
     let (axes_a, axes_b) = (a.axes(), b.axes());
     let centres = a.centre() - b.centre();
     let crossed = (0..9).filter_map(move |i| {
         let cross = axes_a[i / 3].cross(&axes_b[i % 3]);
         (cross.norm_squared() > PARALLEL).then(|| cross.normalize())
     });
-    let half_extent = |solid: &Solid, half: &Vec3, n: &Vec3| {
-        half.dot(&solid.pose.rotation.inverse_transform_vector(n).abs())
-    };
+    let half_extent =
+        |solid: &Solid, half: &Vec3, n: &Vec3| half.dot(&solid.pose.rotation.inverse_transform_vector(n).abs());
     axes_a.into_iter().chain(axes_b).chain(crossed).map(move |axis| {
         let distance = centres.dot(&axis);
         let normal = if distance < 0.0 { -axis } else { axis };

@@ -111,8 +111,6 @@ impl Solid {
 }
 
 fn bounds(points: &[Vec3]) -> (Vec3, Vec3) {
-    let extreme = |of: fn(&Vec3, &Vec3) -> Vec3| {
-        points.iter().skip(1).fold(points[0], |so_far, p| of(&so_far, p))
-    };
+    let extreme = |of: fn(&Vec3, &Vec3) -> Vec3| points.iter().skip(1).fold(points[0], |so_far, p| of(&so_far, p));
     (extreme(Vec3::inf), extreme(Vec3::sup))
 }

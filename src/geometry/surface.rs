@@ -268,9 +268,11 @@ mod tests {
         let field = HeightField::new([0.5, 2.0], vec![vec![0.0, 1.0, 0.0], vec![1.0, 3.0, 1.0]]).unwrap();
         let surface = Surface::of_height_field(&field, &Pose::identity());
         assert!(surface.is_closed);
-        let volume: f64 = surface.triangles.iter().map(|t| t.corners[0].dot(&t.corners[1].cross(&t.corners[2])) / 6.0).sum();
+        let volume: f64 =
+            surface.triangles.iter().map(|t| t.corners[0].dot(&t.corners[1].cross(&t.corners[2])) / 6.0).sum();
         // Floor at -2 under 1 m x 2 m; half a square metre for each triangle, times the mean of its heights.
-        let surface_volume = 0.5 * ((0.0 + 1.0 + 3.0) + (0.0 + 3.0 + 1.0) + (1.0 + 0.0 + 1.0) + (1.0 + 1.0 + 3.0)) / 3.0;
+        let surface_volume =
+            0.5 * ((0.0 + 1.0 + 3.0) + (0.0 + 3.0 + 1.0) + (1.0 + 0.0 + 1.0) + (1.0 + 1.0 + 3.0)) / 3.0;
         assert!((volume - (4.0 + surface_volume)).abs() < 1e-12, "{volume}");
     }
 
@@ -285,7 +287,8 @@ mod tests {
             Surface::of_mesh(&mesh, &Pose::identity()).triangles.iter().map(|t| t.bends).collect::<Vec<_>>()
         };
         for (height, middle) in [(0.0, Flat), (1.0, Ridge), (-1.0, Valley)] {
-            let expected = [[Border, middle, Flat], [Flat, Border, Border], [Border, Border, Flat], [Flat, Border, middle]];
+            let expected =
+                [[Border, middle, Flat], [Flat, Border, Border], [Border, Border, Flat], [Flat, Border, middle]];
             assert_eq!(roof(height), expected);
         }
     }

@@ -123,7 +123,10 @@ impl Touching<'_> {
         let (mut rises, mut falls) = (false, false);
         for triangle in self.near {
             let heights = triangle.corners.map(|p| normal.dot(&p) - level);
-            let (low, high) = (heights.into_iter().fold(f64::INFINITY, f64::min), heights.into_iter().fold(f64::NEG_INFINITY, f64::max));
+            let (low, high) = (
+                heights.into_iter().fold(f64::INFINITY, f64::min),
+                heights.into_iter().fold(f64::NEG_INFINITY, f64::max),
+            );
             if low > self.tolerance || high < -self.tolerance {
                 continue;
             }
@@ -166,9 +169,7 @@ fn is_across_ridge(
     touching: &Touching<'_>,
 ) -> bool {
     let tolerance = touching.tolerance;
-    let inside = |segment: &[Point2]| {
-        segment.len() == 2 && segment.iter().all(|end| (end - middle).norm() > tolerance)
-    };
+    let inside = |segment: &[Point2]| segment.len() == 2 && segment.iter().all(|end| (end - middle).norm() > tolerance);
     let is_smooth = touching.figure.ball().is_some();
     if !(is_smooth || inside(own)) {
         return false;

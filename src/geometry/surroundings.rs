@@ -154,8 +154,9 @@ impl Surroundings {
         let figure = Figure::new(solid);
         self.half_spaces.iter().any(|(_, half_space)| -figure.reach(&-half_space.normal) <= half_space.level)
             || !self.solids.near(solid, 0.0).is_empty()
-            || self.surfaces.iter().any(|(_, surface)| {
-                !surface.near(&low, &high, 0.0).is_empty() || surface.holds(solid)
-            })
+            || self
+                .surfaces
+                .iter()
+                .any(|(_, surface)| !surface.near(&low, &high, 0.0).is_empty() || surface.holds(solid))
     }
 }

@@ -113,8 +113,7 @@ impl<'a> Mover<'a> {
     /// First phase up to `until` at which it arrives at the plane at `level` along `normal`.
     pub fn hits_plane(&self, normal: &Vec3, level: f64, until: f64) -> Option<f64> {
         let lowest = -self.figure.reach(&-normal);
-        let phase =
-            if lowest > level { self.motion.free_advance(&self.guides, normal, lowest - level) } else { 0.0 };
+        let phase = if lowest > level { self.motion.free_advance(&self.guides, normal, lowest - level) } else { 0.0 };
         (phase <= until).then_some(phase)
     }
 

@@ -68,7 +68,15 @@ impl Findings {
     }
 
     /// Adds a problem of a text that is no JSON, at a place in it.
-    pub(super) fn add_in_text(&mut self, file: &SourceFile, text: &str, span: Span, code: Code, message: String, hint: &str) {
+    pub(super) fn add_in_text(
+        &mut self,
+        file: &SourceFile,
+        text: &str,
+        span: Span,
+        code: Code,
+        message: String,
+        hint: &str,
+    ) {
         self.files.push(file.name.clone());
         self.push(&file.name, text, span, code, String::new(), message, Some(hint.to_string()));
     }

@@ -2,9 +2,9 @@
 
 use crate::statics::{Connector, Model};
 
-use super::catalogue::{Catalogue, ModuleType};
+use super::catalogue::Catalogue;
+use super::module_type::ModuleType;
 use super::problem::{Fault, Findings, Part, Problem};
-use super::shape::Shape;
 
 /// Relative difference of lengths that are meant to be equal: the rounding of
 /// decimal numbers and a division, a thousand times over.
@@ -20,26 +20,26 @@ impl Catalogue {
         }
         findings.distinct(Part::ModuleType, "name", self.module_types.iter().map(|t| t.name.as_str()));
         for (i, module_type) in self.module_types.iter().enumerate() {
+            module_type.check(&mut findings, i, &self.connectors);
             self.check_module_type(&mut findings, Part::ModuleType(i), module_type);
         }
         findings.0
     }
 
     fn check_module_type(&self, findings: &mut Findings, part: Part, module_type: &ModuleType) {
-        let (body, lattice) = (&module_type.body, &module_type.lattice);
-        findings.not_negative(part, "mass", &[body.mass]);
-        if findings.finite(part, "com", body.com.as_slice()) && body.com.amax() > 0.0 {
+        let Some(lattice) = &module_type.lattice else { return };
+        let body = module_type.body();
+        if body.com.amax() > 0.0 {
             findings.add(part, "com", Fault::NotSymmetric);
         }
         findings.positive(part, "pitch", &[lattice.pitch]);
-        findings.positive(part, "shape", &body.shape.measures());
         let off = |h: &f64| (2.0 * h - lattice.pitch).abs() > SAME_LENGTH * lattice.pitch;
-        let is_cell = match &body.shape {
-            Shape::Cuboid { half_extents } => !half_extents.iter().any(|h| *h > 0.0 && off(h)),
-            Shape::Cylinder { .. } | Shape::Ball { .. } | Shape::Convex(_) => false,
-        };
-        if lattice.pitch > 0.0 && !is_cell {
-            findings.add(part, "shape", Fault::NotACell);
+        let is_cell = body.shape.cuboid().is_some_and(|half_extents| {
+            let positive = lattice.pitch > 0.0 && half_extents.iter().all(|h| *h > 0.0);
+            !(positive && half_extents.iter().any(off))
+        });
+        if !is_cell {
+            findings.add(part, "half_extents", Fault::NotACell);
         }
         if findings.in_range(part, "face", lattice.face, self.connectors.len())
             && !is_symmetric(&self.connectors[lattice.face].model)

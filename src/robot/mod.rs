@@ -13,6 +13,9 @@ mod configuration_check;
 mod environment;
 mod hull;
 mod lattice;
+pub mod linkage;
+mod module_type;
+mod module_type_check;
 mod occupancy;
 mod problem;
 mod shape;
@@ -21,13 +24,12 @@ mod terrain;
 mod tests;
 
 pub use built_in::BUILT_IN;
-pub use catalogue::{BodyType, Catalogue, LatticeType, ModuleType};
-pub use configuration::{
-    Configuration, FaceConnection, Goal, Matching, Module, ModuleLoad, Port, Requirement,
-};
+pub use catalogue::Catalogue;
+pub use configuration::{Configuration, FaceConnection, Goal, Matching, Module, ModuleLoad, Port, Requirement};
 pub use environment::{Environment, Ground, Obstacle};
 pub use hull::{Hull, HullFace};
 pub use lattice::{Cell, Face, Orientation, Placement, neighbour};
+pub use module_type::{BodyType, JointType, LatticeType, ModuleType, PortPlace, PortType};
 pub use occupancy::Occupancy;
 pub use problem::{Fault, Part, Problem};
 pub use shape::{LARGEST, Shape, ShapeFault};

@@ -62,7 +62,8 @@ fn read_goal(
     };
     let names = module_names(&wire, place, findings);
     let mut configuration = {
-        let environment = environment::environment(wire.environment.as_ref(), &place.key("environment"), resolve, findings)?;
+        let environment =
+            environment::environment(wire.environment.as_ref(), &place.key("environment"), resolve, findings)?;
         let surroundings = Surroundings {
             gravity: wire.gravity_m_s2.map_or_else(Vec3::zeros, vector),
             environment: start.filter(|_| wire.environment.is_none()).map_or(environment, |s| s.environment.clone()),

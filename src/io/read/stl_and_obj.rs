@@ -127,8 +127,7 @@ fn obj(bytes: &[u8], file: &SourceFile, findings: &mut Findings) -> Option<Trian
         findings.add_in_file(file, codes::NOT_UTF8, "is no UTF-8".to_string(), "an OBJ is a text: save it as UTF-8");
         return None;
     };
-    let options =
-        LoadOptions { triangulate: true, ignore_points: true, ignore_lines: true, ..LoadOptions::default() };
+    let options = LoadOptions { triangulate: true, ignore_points: true, ignore_lines: true, ..LoadOptions::default() };
     let mut cursor = Cursor::new(bytes);
     // Materials say nothing about the shape.
     let read = tobj::load_obj_buf(&mut cursor, &options, |_| Ok((Vec::new(), Default::default())));
@@ -158,9 +157,10 @@ fn obj(bytes: &[u8], file: &SourceFile, findings: &mut Findings) -> Option<Trian
 
 fn obj_problem(error: &LoadError) -> (&'static str, &'static str) {
     match error {
-        LoadError::FaceVertexOutOfBounds => {
-            ("a face names a vertex that there is not", "vertices are counted from 1, or from the last one backwards by negative numbers")
-        }
+        LoadError::FaceVertexOutOfBounds => (
+            "a face names a vertex that there is not",
+            "vertices are counted from 1, or from the last one backwards by negative numbers",
+        ),
         LoadError::PositionParseError | LoadError::ColorParseError | LoadError::ScalingByZeroError => {
             ("is no vertex", "a vertex is `v x y z`")
         }

@@ -91,13 +91,7 @@ fn mesh(wire: &wire::Mesh, place: &Place<'_>, resolve: Resolve<'_>, findings: &m
     }
 }
 
-fn of_file(
-    name: &str,
-    scale: f64,
-    place: &Place<'_>,
-    resolve: Resolve<'_>,
-    findings: &mut Findings,
-) -> Option<Mesh> {
+fn of_file(name: &str, scale: f64, place: &Place<'_>, resolve: Resolve<'_>, findings: &mut Findings) -> Option<Mesh> {
     let kind = match name.rsplit_once('.').map(|(_, extension)| extension.to_ascii_lowercase()).as_deref() {
         Some("stl") => stl_and_obj::Kind::Stl,
         Some("obj") => stl_and_obj::Kind::Obj,
@@ -146,9 +140,11 @@ fn describe(fault: ShapeFault, items: &str) -> (Code, String, &'static str) {
         ShapeFault::TooFew { least } => {
             (codes::WRONG_LENGTH, format!("there must be at least {least} {items}"), "is it the right file?")
         }
-        ShapeFault::TooMany { most } => {
-            (codes::TOO_LARGE, format!("more than {most} {items} are not read"), "simplify it, or cut it to what is near the robot")
-        }
+        ShapeFault::TooMany { most } => (
+            codes::TOO_LARGE,
+            format!("more than {most} {items} are not read"),
+            "simplify it, or cut it to what is near the robot",
+        ),
         ShapeFault::Flat if items == "points" => (
             codes::NO_SHAPE,
             "the points lie in a plane".to_string(),

@@ -128,12 +128,11 @@ impl<'a> Checker<'a> {
 
     /// Books the first thing that the moving module hits.
     fn collide(&mut self, action: usize, before: &Configuration, path: &Path) {
-        let solid = |m: usize| Solid::new(before.module_type(m).body.shape.clone(), before.pose(m));
+        let solid = |m: usize| Solid::new(before.module_type(m).body().shape.clone(), before.pose(m));
         let moving = solid(path.module);
         let others = (0..before.modules.len()).filter(|&m| m != path.module);
-        let modules = others.filter_map(|m| {
-            first_collision(&moving, &path.motion, &solid(m)).map(|phase| (phase, Touched::Module(m)))
-        });
+        let modules = others
+            .filter_map(|m| first_collision(&moving, &path.motion, &solid(m)).map(|phase| (phase, Touched::Module(m))));
         let around = self.surroundings.first_collision(&moving, &path.motion);
         let around = around.map(|(phase, what)| (phase, what.into()));
         let first = modules.chain(around).min_by(|(a, _), (b, _)| a.total_cmp(b));

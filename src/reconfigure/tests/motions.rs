@@ -28,7 +28,7 @@ fn all_moves(from: Cell) -> Vec<Move> {
 
 fn cube_at(cell: Cell) -> Solid {
     let configuration = cubes(&[cell], 0);
-    Solid::new(configuration.module_type(0).body.shape.clone(), configuration.pose(0))
+    Solid::new(configuration.module_type(0).body().shape.clone(), configuration.pose(0))
 }
 
 /// The room of a move is exactly where a cube would be hit on the way.
@@ -37,9 +37,7 @@ fn the_room_of_a_move_is_what_the_continuous_sweep_hits() {
     let pitch = cubes(&[[0; 3]], 0).pitch();
     let near = || (-2..=2).flat_map(|x| (-2..=2).flat_map(move |y| (-2..=2).map(move |z| [x, y, z])));
     for step in all_moves([0; 3]) {
-        let hit = |cell: &Cell| {
-            first_collision(&cube_at([0; 3]), &motion(step, pitch), &cube_at(*cell)).is_some()
-        };
+        let hit = |cell: &Cell| first_collision(&cube_at([0; 3]), &motion(step, pitch), &cube_at(*cell)).is_some();
         let swept: BTreeSet<Cell> = near().filter(|cell| *cell != [0; 3]).filter(hit).collect();
         assert_eq!(step.room().into_iter().collect::<BTreeSet<_>>(), swept, "{step:?}");
     }
@@ -80,7 +78,7 @@ fn legal_by_definition(configuration: &crate::robot::Configuration) -> BTreeSet<
                 let Ok(next) = transition(configuration, &action) else { continue };
                 let path = next.path.unwrap();
                 let solid =
-                    |m: usize| Solid::new(configuration.module_type(m).body.shape.clone(), configuration.pose(m));
+                    |m: usize| Solid::new(configuration.module_type(m).body().shape.clone(), configuration.pose(m));
                 let mut others = (0..count).filter(|&m| m != module).map(solid);
                 if others.all(|other| first_collision(&solid(module), &path.motion, &other).is_none()) {
                     legal.insert(format!("{action:?}"));
