@@ -5,6 +5,7 @@ use std::sync::Arc;
 use crate::spatial::Vec3;
 
 use super::hull::Hull;
+use super::problem::{Findings, Part};
 
 /// A convex solid in its own frame.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,22 +32,32 @@ pub enum Shape {
 }
 
 impl Shape {
+    /// Half extents in m of a cuboid; `None` for other shapes.
+    pub fn cuboid(&self) -> Option<&Vec3> {
+        match self {
+            Self::Cuboid { half_extents } => Some(half_extents),
+            Self::Cylinder { .. } | Self::Ball { .. } | Self::Convex(_) => None,
+        }
+    }
+
     /// Radius in m of a ball; `None` for other shapes.
-    pub const fn ball_radius(&self) -> Option<f64> {
+    pub fn ball_radius(&self) -> Option<f64> {
         match self {
             Self::Ball { radius } => Some(*radius),
             Self::Cuboid { .. } | Self::Cylinder { .. } | Self::Convex(_) => None,
         }
     }
 
-    /// Its measures in m, which are positive in a sound shape; none for a hull,
-    /// which is sound by construction.
-    pub(super) fn measures(&self) -> Vec<f64> {
+    /// Adds everything that is wrong with the shape, which is that of a part. A hull is sound by construction.
+    pub(super) fn check(&self, findings: &mut Findings, part: Part) {
         match self {
-            Self::Cuboid { half_extents } => half_extents.iter().copied().collect(),
-            Self::Cylinder { radius, height } => vec![*radius, *height],
-            Self::Ball { radius } => vec![*radius],
-            Self::Convex(_) => Vec::new(),
+            Self::Cuboid { half_extents } => findings.positive(part, "half_extents", half_extents.as_slice()),
+            Self::Cylinder { radius, height } => {
+                findings.positive(part, "radius", &[*radius]);
+                findings.positive(part, "height", &[*height]);
+            }
+            Self::Ball { radius } => findings.positive(part, "radius", &[*radius]),
+            Self::Convex(_) => {}
         }
     }
 }
