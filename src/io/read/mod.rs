@@ -3,6 +3,7 @@
 //! Each reader takes the wire types' values and the places they came from. What
 //! a file means is decided here; how it is written, in [`super::wire`].
 
+mod angle;
 mod catalogue;
 mod certificate;
 mod configuration;
@@ -12,7 +13,9 @@ mod decode;
 mod environment;
 mod faults;
 mod goal;
+mod lattice_type;
 mod matching;
+mod module_type;
 mod names;
 mod outcome;
 mod plan;
