@@ -1,17 +1,15 @@
 //! Which ports meet, and the frame in which they hold each other.
 
-use nalgebra::Vector3;
-
 use crate::robot::catalogue::Catalogue;
 use crate::robot::module_type::{ModuleType, PortPlace};
-use crate::spatial::{Pose, Rotation, Vec3};
+use crate::spatial::{Pose, Vec3};
 use crate::statics::Model;
 
-use super::{Connection, Linkage, Port};
+use super::{Connection, Linkage, Port, mated};
 
 /// Distance relative to the size of the modules, and sine of the angle, up to which ports
-/// meet: decimal input of six digits, and far above the rounding of poses.
-pub const MEETING: f64 = 1e-5;
+/// meet: decimal input of six digits behind the point, and far above the rounding of poses.
+pub const MEETING: f64 = 5e-5;
 
 /// How two ports hold each other.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -148,15 +146,13 @@ impl Linkage {
         let tolerance = MEETING * sizes[0].max(sizes[1]);
         let frame = match (&parent.place, &child.place) {
             (Where::Point { frame, orientations: m }, Where::Point { frame: other, orientations: n }) => {
-                (docked(frame, other, tolerance) && at_an_angle(frame, other, *m.min(n))).then_some(*frame)
+                (docked(frame, other, tolerance) && at_an_angle(frame, other, common(*m, *n))).then_some(*frame)
             }
             (Where::Point { frame, .. }, Where::Surface { radius }) => {
                 lies_on(frame, &child.centre, *radius, tolerance).then_some(*frame)
             }
             (Where::Surface { radius }, Where::Point { frame, .. }) => {
-                // Outwards from the surface: half a turn about x reverses the port's z.
-                let reversed = Rotation::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI);
-                lies_on(frame, &parent.centre, *radius, tolerance).then(|| frame * reversed)
+                lies_on(frame, &parent.centre, *radius, tolerance).then(|| mated(frame, 0.0))
             }
             (Where::Surface { .. }, Where::Surface { .. }) => None,
         }?;
@@ -171,11 +167,25 @@ fn docked(a: &Pose, b: &Pose, tolerance: f64) -> bool {
     apart <= tolerance && za.dot(&zb) < 0.0 && za.cross(&zb).norm() <= MEETING
 }
 
+/// At how many angles, equally spaced over a turn, two ports engage: those at which both do. 1 with a surface,
+/// which has no angle.
+pub(super) fn orientations_between(a: &PortPlace, b: &PortPlace) -> u32 {
+    match (a, b) {
+        (PortPlace::Point { orientations: m, .. }, PortPlace::Point { orientations: n, .. }) => common(*m, *n),
+        _ => 1,
+    }
+}
+
+/// The greatest common divisor; 1 if both are 0.
+fn common(m: u32, n: u32) -> u32 {
+    if n == 0 { m.max(1) } else { common(n, m % n) }
+}
+
 /// Whether two ports that look at each other are turned by a multiple of a turn over `orientations`.
 fn at_an_angle(a: &Pose, b: &Pose, orientations: u32) -> bool {
     let x = a.rotation.inverse_transform_vector(&(b.rotation * Vec3::x()));
-    let steps = x.y.atan2(x.x) / std::f64::consts::TAU * f64::from(orientations.max(1));
-    (steps - steps.round()).abs() <= MEETING * f64::from(orientations.max(1))
+    let steps = x.y.atan2(x.x) / std::f64::consts::TAU * f64::from(orientations);
+    (steps - steps.round()).abs() <= MEETING * f64::from(orientations)
 }
 
 /// Whether a port at a point lies on a ball and looks at its centre.

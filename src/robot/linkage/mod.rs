@@ -4,9 +4,13 @@
 //! A lattice module may be part of such a robot: it is then a rigid module with six ports. Knows
 //! poses and which ports meet; knows no forces, no collision of solids and no files.
 
+mod code;
 mod engagement;
 mod kinematics;
 mod problems;
+mod spot;
+#[cfg(test)]
+mod tests;
 
 use std::sync::Arc;
 
@@ -18,8 +22,10 @@ use super::catalogue::Catalogue;
 use super::configuration::{Environment, Matching, ModuleLoad, Requirement};
 use super::module_type::ModuleType;
 
+pub use code::Code;
 pub use engagement::{Engagement, MEETING};
 pub use kinematics::{child_pose, mated};
+pub use spot::{MICRO, Spot};
 
 /// A module of a linkage.
 #[derive(Clone, Debug, PartialEq)]
