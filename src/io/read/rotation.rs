@@ -62,18 +62,22 @@ pub(super) fn normal(components: [Real; 3], place: &Place<'_>, findings: &mut Fi
 
 /// A direction of any length but zero, normalised; `None` where there is none.
 pub(super) fn direction(components: [Real; 3], place: &Place<'_>, findings: &mut Findings) -> Option<Unit<Vec3>> {
-    let given = vector(components);
-    // Scaled first, so that no square overflows or vanishes.
-    let largest = given.amax();
-    if !(largest > 0.0) {
+    let found = unit(components);
+    if found.is_none() {
         let hint = "any length does, but it must point somewhere, e.g. [0, 0, 1]".to_string();
         findings.add(place, codes::NOT_UNIT, "a direction of length 0 says nothing", hint);
-        return None;
     }
+    found
+}
+
+fn unit(components: [Real; 3]) -> Option<Unit<Vec3>> {
+    let given = vector(components);
     if (given.norm() - 1.0).abs() <= ROUNDING {
         return Some(Unit::new_unchecked(given));
     }
-    Some(Unit::new_normalize(given / largest))
+    // Scaled first, so that no square overflows or vanishes.
+    let largest = given.amax();
+    (largest > 0.0).then(|| Unit::new_normalize(given / largest))
 }
 
 /// Cosine of the angle to the body's x axis up to which a port's x axis is taken from it.
@@ -94,14 +98,29 @@ pub(super) fn frame_along(
     };
     let z = z?;
     let near = given.unwrap_or(if z.x.abs() <= ASIDE { Vec3::x_axis() } else { Vec3::y_axis() });
-    let across = near.into_inner() - z.into_inner() * near.dot(&z);
-    if !(across.norm() > UNIT) {
+    let found = axes(&z, &near);
+    if found.is_none() {
         let hint = "it says how the connector is turned about `axis`: choose a direction across it".to_string();
         findings.add(&place.key("x_axis"), codes::NOT_UNIT, "is parallel to `axis`", hint);
+    }
+    found
+}
+
+/// The rotation that a port's `axis` and `x_axis` say when they are read.
+pub(in super::super) fn port_rotation(axis: [Real; 3], x_axis: [Real; 3]) -> Option<Rotation> {
+    let [z, x] = [axis, x_axis].map(unit);
+    axes(&z?, &x?)
+}
+
+/// The rotation to axes with this z, and x as close to `near` as may be; `None` where they are parallel.
+fn axes(z: &Unit<Vec3>, near: &Unit<Vec3>) -> Option<Rotation> {
+    let z = z.into_inner();
+    let across = near.into_inner() - z * near.dot(&z);
+    if !(across.norm() > UNIT) {
         return None;
     }
     let x = across.normalize();
-    let axes = Matrix3::from_columns(&[x, z.cross(&x), z.into_inner()]);
+    let axes = Matrix3::from_columns(&[x, z.cross(&x), z]);
     Some(Rotation::from_rotation_matrix(&Rotation3::from_matrix_unchecked(axes)))
 }
 
