@@ -152,6 +152,11 @@ fn describe(problem: &Problem, ids: &[&str]) -> Option<(Code, String, &'static s
             owned("connectors engage anywhere on the surface of a ball only"),
             "make the body's shape a \"ball\", or give the port a position and an axis",
         ),
+        Fault::PatchWithoutFace => (
+            codes::MIXED,
+            owned("a `patch` without points takes the corners of a cube's face, and this port has none"),
+            "give the connector `points_m`",
+        ),
         Fault::WrongJointCount { joints } => {
             (codes::MIXED, format!("its type has {joints} joints"), "give each joint one position")
         }

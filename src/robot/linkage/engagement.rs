@@ -181,6 +181,21 @@ fn common(m: u32, n: u32) -> u32 {
     if n == 0 { m.max(1) } else { common(n, m % n) }
 }
 
+/// Frame in W of the connection of two ports, each of a module type and on a body with this pose in W: z from the
+/// first one's body to the second's, x that of the port at a point (of two the first one's). `None` for two
+/// surfaces. Whether they meet is not asked.
+pub fn frame_between([first, second]: [(&ModuleType, usize, Pose); 2]) -> Option<Pose> {
+    let place = |(module_type, port, _): &(&ModuleType, usize, Pose)| match &module_type.ports[*port].place {
+        PortPlace::Point { frame, .. } => Some(*frame),
+        PortPlace::Surface => None,
+    };
+    match (place(&first), place(&second)) {
+        (Some(frame), _) => Some(first.2 * frame),
+        (None, Some(frame)) => Some(mated(&(second.2 * frame), 0.0)),
+        (None, None) => None,
+    }
+}
+
 /// Whether two ports that look at each other are turned by a multiple of a turn over `orientations`.
 fn at_an_angle(a: &Pose, b: &Pose, orientations: u32) -> bool {
     let x = a.rotation.inverse_transform_vector(&(b.rotation * Vec3::x()));
