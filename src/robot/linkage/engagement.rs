@@ -169,7 +169,7 @@ fn docked(a: &Pose, b: &Pose, tolerance: f64) -> bool {
 
 /// At how many angles, equally spaced over a turn, two ports engage: those at which both do. 1 with a surface,
 /// which has no angle.
-pub(super) fn orientations_between(a: &PortPlace, b: &PortPlace) -> u32 {
+pub fn orientations_between(a: &PortPlace, b: &PortPlace) -> u32 {
     match (a, b) {
         (PortPlace::Point { orientations: m, .. }, PortPlace::Point { orientations: n, .. }) => common(*m, *n),
         _ => 1,
