@@ -24,7 +24,7 @@ use super::environment::Environment;
 use super::module_type::ModuleType;
 
 pub use code::Code;
-pub use engagement::{Engagement, MEETING, frame_between};
+pub use engagement::{Engagement, MEETING, frame_between, orientations_between};
 pub use kinematics::{child_pose, mated};
 pub use spot::{MICRO, Spot};
 
