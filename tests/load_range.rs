@@ -143,11 +143,7 @@ fn a_cantilever_carries_at_its_tip_what_bending_leaves() {
         let length = 0.1 * count as f64;
         let own = G * count as f64 * length / 2.0;
         let s = cantilever(count, 2.0 * own);
-        let tip = UnitForce {
-            body: count - 1,
-            direction: -Vec3::z(),
-            at: Some(Vec3::new(length, 0.0, 0.0)),
-        };
+        let tip = UnitForce { body: count - 1, direction: -Vec3::z(), at: Some(Vec3::new(length, 0.0, 0.0)) };
         let [_, down] = between(&s, &tip, 1.0, -3.0 * own / length, own / length);
         let beyond = down.beyond.expect("it breaks");
         assert_eq!(beyond.weakest_connection(), Some(0));
@@ -248,8 +244,11 @@ fn hold_to_the_oracle(kind: Kind, seeds: std::ops::Range<u64>) -> [usize; 2] {
             LoadRange::Between { lowest, highest } => {
                 for (end, sign) in [(&lowest, -1.0), (&highest, 1.0)] {
                     counts[usize::from(end.is_decided())] += 1;
-                    let (inner, outer) =
-                        if sign > 0.0 { (end.force.lower, end.force.upper) } else { (end.force.upper, end.force.lower) };
+                    let (inner, outer) = if sign > 0.0 {
+                        (end.force.lower, end.force.upper)
+                    } else {
+                        (end.force.upper, end.force.lower)
+                    };
                     assert!(sign * (outer - inner) >= 0.0 || end.is_unlimited(), "{name}: {end:?}");
                     let width = highest.force.upper - lowest.force.lower;
                     let size = width.min(1e12).max(inner.abs().min(1e12)).max(1e-3 * weight(&s));
@@ -313,7 +312,10 @@ fn bisection_finds_the_same_ends() {
             }
             let room = 1e-4 * outside + 1e-9;
             let found = highest.force;
-            assert!(found.lower <= outside + room && found.upper >= inside - room, "{kind:?} {seed}: {found:?} {inside}");
+            assert!(
+                found.lower <= outside + room && found.upper >= inside - room,
+                "{kind:?} {seed}: {found:?} {inside}"
+            );
             compared += 1;
         }
     }
@@ -347,9 +349,7 @@ fn ends_scale_and_move_with_the_structure() {
             at: force.at.map(|at| motion.transform_point(&at.into()).coords),
             ..force
         };
-        for (after, factor) in
-            [(range(&scaled, &force, 1.0), 7.0), (range(&moved(&s, &motion), &seen, 1.0), 1.0)]
-        {
+        for (after, factor) in [(range(&scaled, &force, 1.0), 7.0), (range(&moved(&s, &motion), &seen, 1.0), 1.0)] {
             match (&before, after) {
                 (LoadRange::Between { lowest, highest }, LoadRange::Between { lowest: low, highest: high }) => {
                     for (a, b) in [(lowest, &low), (highest, &high)] {

@@ -17,8 +17,7 @@ pub(super) struct Line<'s> {
 impl<'s> Line<'s> {
     pub(super) fn new(structure: &'s Structure, force: &UnitForce) -> Self {
         let at = force.at.unwrap_or(structure.bodies[force.body].com);
-        let unit =
-            Load { body: force.body, force: force.direction.normalize(), torque: Vec3::zeros(), at: Some(at) };
+        let unit = Load { body: force.body, force: force.direction.normalize(), torque: Vec3::zeros(), at: Some(at) };
         Self { structure, unit }
     }
 

@@ -16,8 +16,7 @@ use super::line::Line;
 pub(super) fn least(line: &Line<'_>) -> Assessment {
     let mut held = line.structure.clone();
     let none = f64::INFINITY;
-    let model =
-        Model::Box { shear: [0.0; 2], tension: none, compression: none, bending: [0.0; 2], torsion: 0.0 };
+    let model = Model::Box { shear: [0.0; 2], tension: none, compression: none, bending: [0.0; 2], torsion: 0.0 };
     held.connectors.push(Connector { name: "rod".to_owned(), strength: 1.0, model });
     let along = Rotation::rotation_between(&Vec3::z(), &line.unit.force)
         .unwrap_or_else(|| Rotation::from_axis_angle(&Vec3::x_axis(), std::f64::consts::PI));
