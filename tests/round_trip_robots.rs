@@ -65,7 +65,7 @@ fn catalogue() -> impl Strategy<Value = Catalogue> {
         let mut catalogue = Catalogue::cube();
         if let Some((mass, name)) = own {
             catalogue.name = name;
-            catalogue.module_types[0].body.mass = mass;
+            catalogue.module_types[0].bodies[0].mass = mass;
         }
         catalogue
     })
@@ -95,7 +95,7 @@ prop_compose! {
         margin in number(), connected: bool, engaged in vec(any::<bool>(), 32),
     ) -> Configuration {
         let module_type = module_type.index(catalogue.module_types.len());
-        let pitch = catalogue.module_types[module_type].lattice.pitch;
+        let pitch = catalogue.module_types[module_type].cell().pitch;
         let lowest = cells.iter().map(|cell| cell[2]).min().unwrap();
         let ground = ground.map(|(gap, friction)| Ground {
             height: f64::from(lowest) * pitch - gap,

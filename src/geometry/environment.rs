@@ -22,7 +22,7 @@ pub fn environment_problems(configuration: &Configuration) -> Vec<Problem> {
         if problems.len() >= MOST {
             break;
         }
-        let shape = configuration.module_type(module).body.shape.clone();
+        let shape = configuration.module_type(module).body().shape.clone();
         let solid = Solid::new(shape, configuration.pose(module));
         let skin = SKIN * solid.size();
         let mut add = |fault| problems.push(Problem::new(Part::Module(module), "placement", fault));

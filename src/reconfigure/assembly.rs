@@ -3,11 +3,11 @@
 //! Knows which faces hold, which touch and where; knows neither actions nor
 //! what the oracle makes of the structure.
 
-use nalgebra::{Matrix3, Rotation3, Translation3};
+use nalgebra::Translation3;
 
 use crate::geometry::{BroadPhase, ContactPatch, Solid, TOUCH, contact, ground_contact};
 use crate::robot::{Configuration, Face, FaceConnection, Occupancy, Placement};
-use crate::spatial::{Pose, Rotation, Vec3};
+use crate::spatial::{Pose, Vec3};
 use crate::statics::{Anchor, Body, Connection, Connector, Contact, Load, Structure};
 
 use super::surface::{Surface, full_face, scaled};
@@ -142,8 +142,7 @@ impl<'a> Assembler<'a> {
     /// engagement, and contacts wherever else something touches.
     ///
     /// The frame of a face's connection is at the centre of the overlap, z from
-    /// parent to child, x along the world axis after the normal's (in the order x,
-    /// y, z, x), whatever the modules' orientations. A partly overlapped face holds with its
+    /// parent to child, as [`Face::outward_frame`] says, whatever the modules' orientations. A partly overlapped face holds with its
     /// share of the connector's strength and limits. Engagements that hold nothing are left out:
     /// faces without overlap or whose connectors do not fit, hinges of modules that have none.
     ///
@@ -182,7 +181,7 @@ impl<'a> Assembler<'a> {
     fn add_bodies(&self, assembly: &mut Assembly, poses: &[Pose]) {
         let structure = &mut assembly.structure;
         structure.bodies.extend(self.configuration.modules.iter().zip(poses).enumerate().map(|(i, (module, pose))| {
-            let body = &self.configuration.module_type(i).body;
+            let body = &self.configuration.module_type(i).body();
             Body { mass: body.mass, com: (pose * nalgebra::Point3::from(body.com)).coords, fixed: module.fixed }
         }));
         structure.loads.extend(self.configuration.loads.iter().map(|load| Load {
@@ -198,7 +197,7 @@ impl<'a> Assembler<'a> {
         let (connector, frame) = match engagement {
             Engagement::Face { towards, .. } => {
                 let connector = self.surface(parent, child).connector?;
-                let rotation = face_frame(*towards);
+                let rotation = towards.outward_frame();
                 let offset = rotation.inverse_transform_vector(&(centre(poses, child) - centre(poses, parent)));
                 let extent = [offset.x, offset.y].map(|o| (1.0 - o.abs() / self.pitch).min(1.0));
                 if !(extent[0] > NO_OVERLAP && extent[1] > NO_OVERLAP) {
@@ -234,7 +233,7 @@ impl<'a> Assembler<'a> {
         for (a, towards, b) in occupancy.touching_pairs() {
             if carries(a, b) {
                 let points = self.surface(a, b).face_points(self.pitch);
-                let frame = face_frame(towards);
+                let frame = towards.outward_frame();
                 let origin = centre(poses, a) + towards.normal() * (self.pitch / 2.0);
                 let points = points.iter().map(|[x, y]| origin + frame * Vec3::new(*x, *y, 0.0)).collect();
                 self.add_pair(assembly, a, b, ContactPatch { normal: -towards.normal(), points });
@@ -293,20 +292,12 @@ impl<'a> Assembler<'a> {
     }
 
     fn solid(&self, module: usize, poses: &[Pose]) -> Solid {
-        Solid::new(self.configuration.module_type(module).body.shape.clone(), poses[module])
+        Solid::new(self.configuration.module_type(module).body().shape.clone(), poses[module])
     }
 }
 
 fn centre(poses: &[Pose], module: usize) -> Vec3 {
     poses[module].translation.vector
-}
-
-/// Axes of a connection frame on a face that looks in world direction `towards`:
-/// z outwards, x along the world axis after the normal's.
-fn face_frame(towards: Face) -> Rotation {
-    let z = towards.normal();
-    let x = Vec3::ith((towards.axis() + 1) % 3, 1.0);
-    Rotation::from_rotation_matrix(&Rotation3::from_matrix_unchecked(Matrix3::from_columns(&[x, z.cross(&x), z])))
 }
 
 /// The index of the connector scaled to a partly overlapped face, added to the structure.

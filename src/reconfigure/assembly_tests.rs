@@ -21,7 +21,7 @@ fn catalogue() -> Arc<Catalogue> {
     catalogue.connectors.push(cone());
     let mut third = catalogue.module_types[0].clone();
     third.name = "cube-cone".into();
-    third.lattice.face = catalogue.connectors.len() - 1;
+    third.lattice.as_mut().expect("a cube").face = catalogue.connectors.len() - 1;
     catalogue.module_types.push(third);
     Arc::new(catalogue)
 }
@@ -146,7 +146,7 @@ fn a_sliding_module_hangs_on_the_overlaps() {
             let assembly = assembler.assemble(&Transient { placements: &placements, moving, engaged: &engaged });
             let structure = &assembly.structure;
             let strength = structure.connections.iter().map(|c| structure.connectors[c.connector].strength);
-            let full = &configuration.catalogue.connectors[configuration.module_type(0).lattice.face];
+            let full = &configuration.catalogue.connectors[configuration.module_type(0).cell().face];
             assert!((strength.sum::<f64>() - full.strength).abs() < 1e-9);
             let expected: Vec<_> = (0..2).filter(|side| eighth != if *side == 0 { 8 } else { 0 }).collect();
             assert_eq!(assembly.connections, expected);

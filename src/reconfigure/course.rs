@@ -3,11 +3,11 @@
 //!
 //! Knows placements and connections; asks no oracle.
 
-use nalgebra::{Matrix3, Rotation3, Translation3, Unit};
+use nalgebra::{Translation3, Unit};
 
 use crate::geometry;
 use crate::robot::{Face, Occupancy, Placement};
-use crate::spatial::{Pose, Rotation, Vec3};
+use crate::spatial::{Pose, Vec3};
 
 use super::assembly::{Engagement, Moving, Transient};
 use super::layout::{Bond, neighbour};
@@ -42,7 +42,7 @@ impl Course {
             Motion::Pivot { support, towards, .. } => {
                 let parent = occupancy.at(neighbour(step.from, support))?;
                 let edge = edge_centre(step, support, towards, pitch);
-                let frame = Pose::from_parts(Translation3::from(edge), along(pivot_axis(support, towards)));
+                let frame = Pose::from_parts(Translation3::from(edge), pivot_axis(support, towards).outward_frame());
                 engaged.push(Engagement::Hinge { parent, child: module, frame });
             }
         }
@@ -88,11 +88,4 @@ fn face(modules: [usize; 2], towards: Face) -> Engagement {
 /// Centre of the edge that a module pivots about, in W, in m.
 fn edge_centre(step: Move, support: Face, towards: Face, pitch: f64) -> Vec3 {
     Placement::new(step.from).centre(pitch) + (support.normal() + towards.normal()) * (pitch / 2.0)
-}
-
-/// A rotation that turns z to this direction.
-fn along(direction: Face) -> Rotation {
-    let z = direction.normal();
-    let x = Vec3::ith((direction.axis() + 1) % 3, 1.0);
-    Rotation::from_rotation_matrix(&Rotation3::from_matrix_unchecked(Matrix3::from_columns(&[x, z.cross(&x), z])))
 }

@@ -67,7 +67,7 @@ impl<'a> Domain<'a> {
         let class = layout.placed()[layout.at(step.from).expect("a fitting move has a module")].class;
         let module_type = self.problem.class(class).module_type;
         self.clear.get((step, module_type), |_| {
-            let shape = self.problem.start().catalogue.module_types[module_type].body.shape.clone();
+            let shape = self.problem.start().catalogue.module_types[module_type].body().shape.clone();
             // A cube sweeps the same room in every orientation.
             let solid = Solid::new(shape, Placement::new(step.from).pose(self.pitch));
             first_collision(&solid, &motion(step, self.pitch), &self.surroundings).is_none()

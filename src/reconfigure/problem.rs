@@ -82,7 +82,7 @@ impl Problem {
     /// What modules of a class can do. Fixed modules carry others but do not move.
     pub fn ability(&self, class: u16) -> Ability {
         let class = self.class(class);
-        let lattice = &self.start.catalogue.module_types[class.module_type].lattice;
+        let lattice = &self.start.catalogue.module_types[class.module_type].cell();
         let free = !class.fixed;
         Ability { slide: free && lattice.slide, pivot: free && lattice.pivot, hinge: lattice.hinge.is_some() }
     }

@@ -35,7 +35,7 @@ impl Surface {
     /// How modules of two types meet. `friction` is that of faces whose
     /// connector says nothing about it.
     pub fn between(catalogue: &Catalogue, first: usize, second: usize, friction: f64) -> Self {
-        let half = catalogue.module_types[first].lattice.pitch / 2.0;
+        let half = catalogue.module_types[first].cell().pitch / 2.0;
         let connector = catalogue.face_connector(first, second);
         let bare = Self { connector, contained: false, friction, points: None, lever: 1.0 };
         match connector.map(|c| &catalogue.connectors[c].model) {

@@ -1,9 +1,11 @@
 //! The built-in catalogue of cubes.
 
-use crate::spatial::Vec3;
+use crate::spatial::{Pose, Vec3};
 use crate::statics::{Connector, Model};
 
-use super::catalogue::{BodyType, Catalogue, LatticeType, ModuleType, Shape};
+use super::catalogue::Catalogue;
+use super::module_type::{BodyType, LatticeType, ModuleType};
+use super::shape::Shape;
 
 /// Edge length in m. Published: M-Blocks are cubes of 50 mm (J. W. Romanishin,
 /// K. Gilpin, D. Rus: "M-Blocks: momentum-driven, magnetic modular robots",
@@ -115,14 +117,13 @@ fn hinge(name: &str, drive: f64) -> Connector {
 
 fn cube_type(name: &str, face: usize, hinge: usize) -> ModuleType {
     let half = PITCH / 2.0;
-    ModuleType {
-        name: name.into(),
-        body: BodyType {
-            name: "body".into(),
-            mass: MASS,
-            com: Vec3::zeros(),
-            shape: Shape::Cuboid { half_extents: Vec3::new(half, half, half) },
-        },
-        lattice: LatticeType { pitch: PITCH, face, hinge: Some(hinge), slide: true, pivot: true },
-    }
+    let body = BodyType {
+        name: "body".into(),
+        mass: MASS,
+        com: Vec3::zeros(),
+        shape: Shape::Cuboid { half_extents: Vec3::new(half, half, half) },
+        shape_pose: Pose::identity(),
+    };
+    let lattice = LatticeType { pitch: PITCH, face, hinge: Some(hinge), slide: true, pivot: true };
+    ModuleType::of_lattice(name, body, lattice)
 }

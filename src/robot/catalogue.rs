@@ -1,58 +1,8 @@
-//! Module types and the connectors they carry.
+//! Module types with the connectors they carry.
 
-use crate::spatial::Vec3;
 use crate::statics::{Connector, Model};
 
-/// A convex solid, centred on its own frame.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Shape {
-    /// A box with these half extents in m.
-    Cuboid {
-        /// Half of the edge lengths along x, y and z in m, positive.
-        half_extents: Vec3,
-    },
-}
-
-/// One rigid body of a module type.
-#[derive(Clone, Debug, PartialEq)]
-pub struct BodyType {
-    /// Name within the module type.
-    pub name: String,
-    /// Mass in kg.
-    pub mass: f64,
-    /// Centre of mass in the module frame, in m.
-    pub com: Vec3,
-    /// Solid, centred on the module frame.
-    pub shape: Shape,
-}
-
-/// What makes a module type a lattice module: cubes that dock face to face.
-#[derive(Clone, Debug, PartialEq)]
-pub struct LatticeType {
-    /// Edge length of a cell in m.
-    pub pitch: f64,
-    /// Connector on every face: index into [`Catalogue::connectors`]. A patch
-    /// connector without points takes the corners of the face it sits on.
-    pub face: usize,
-    /// Connector that holds the module at a shared edge while it pivots, z
-    /// along the edge: index into [`Catalogue::connectors`].
-    pub hinge: Option<usize>,
-    /// Whether it can slide over the faces of two coplanar neighbours.
-    pub slide: bool,
-    /// Whether it can pivot about an edge shared with a neighbour.
-    pub pivot: bool,
-}
-
-/// A kind of module.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ModuleType {
-    /// Name that configurations use.
-    pub name: String,
-    /// Its one rigid body.
-    pub body: BodyType,
-    /// How it sits in the lattice, docks and moves.
-    pub lattice: LatticeType,
-}
+use super::module_type::ModuleType;
 
 /// A set of module types with their connectors.
 #[derive(Clone, Debug, PartialEq)]
@@ -71,7 +21,7 @@ impl Catalogue {
     /// type's if equal), as an index into [`Catalogue::connectors`]. `None`
     /// when their models differ, so that they do not fit. The catalogue must be sound.
     pub fn face_connector(&self, first: usize, second: usize) -> Option<usize> {
-        let face = |module_type: usize| self.module_types[module_type].lattice.face;
+        let face = |module_type: usize| self.module_types[module_type].cell().face;
         let (a, b) = (face(first), face(second));
         let (ca, cb) = (&self.connectors[a], &self.connectors[b]);
         let same_model = matches!(
@@ -88,7 +38,7 @@ impl Catalogue {
     /// smaller strength of the two modules' hinges, the pivoting one's if
     /// equal. `None` when either has no hinge.
     pub fn hinge(&self, pivoting: usize, supporter: usize) -> Option<usize> {
-        let hinge = |module_type: usize| self.module_types[module_type].lattice.hinge;
+        let hinge = |module_type: usize| self.module_types[module_type].cell().hinge;
         let (a, b) = (hinge(pivoting)?, hinge(supporter)?);
         Some(if self.connectors[b].strength < self.connectors[a].strength { b } else { a })
     }

@@ -2,7 +2,8 @@
 
 use crate::statics::{Connector, Model};
 
-use super::catalogue::{Catalogue, ModuleType, Shape};
+use super::catalogue::Catalogue;
+use super::module_type::ModuleType;
 use super::problem::{Fault, Findings, Part, Problem};
 
 /// Relative difference of lengths that are meant to be equal: the rounding of
@@ -19,22 +20,25 @@ impl Catalogue {
         }
         findings.distinct(Part::ModuleType, "name", self.module_types.iter().map(|t| t.name.as_str()));
         for (i, module_type) in self.module_types.iter().enumerate() {
+            module_type.check(&mut findings, i, &self.connectors);
             self.check_module_type(&mut findings, Part::ModuleType(i), module_type);
         }
         findings.0
     }
 
     fn check_module_type(&self, findings: &mut Findings, part: Part, module_type: &ModuleType) {
-        let (body, lattice) = (&module_type.body, &module_type.lattice);
-        findings.not_negative(part, "mass", &[body.mass]);
-        if findings.finite(part, "com", body.com.as_slice()) && body.com.amax() > 0.0 {
+        let Some(lattice) = &module_type.lattice else { return };
+        let body = module_type.body();
+        if body.com.amax() > 0.0 {
             findings.add(part, "com", Fault::NotSymmetric);
         }
         findings.positive(part, "pitch", &[lattice.pitch]);
-        let Shape::Cuboid { half_extents } = &body.shape;
-        findings.positive(part, "half_extents", half_extents.as_slice());
         let off = |h: &f64| (2.0 * h - lattice.pitch).abs() > SAME_LENGTH * lattice.pitch;
-        if lattice.pitch > 0.0 && half_extents.iter().all(|h| *h > 0.0) && half_extents.iter().any(off) {
+        let is_cell = body.shape.cuboid().is_some_and(|half_extents| {
+            let positive = lattice.pitch > 0.0 && half_extents.iter().all(|h| *h > 0.0);
+            !(positive && half_extents.iter().any(off))
+        });
+        if !is_cell {
             findings.add(part, "half_extents", Fault::NotACell);
         }
         if findings.in_range(part, "face", lattice.face, self.connectors.len())

@@ -6,9 +6,11 @@ use petgraph::unionfind::UnionFind;
 
 use crate::spatial::{Pose, Vec3};
 
-use super::catalogue::{Catalogue, ModuleType, Shape};
+use super::catalogue::Catalogue;
 use super::lattice::{Face, Placement};
+use super::module_type::ModuleType;
 use super::occupancy::{Occupancy, connection};
+use super::shape::Shape;
 
 /// A module of a configuration.
 #[derive(Clone, Debug, PartialEq)]
@@ -141,12 +143,12 @@ impl Configuration {
         self.modules
             .first()
             .and_then(|m| self.catalogue.module_types.get(m.module_type))
-            .map_or(1.0, |module_type| module_type.lattice.pitch)
+            .map_or(1.0, |module_type| module_type.cell().pitch)
     }
 
     /// Pose of a module's frame in W.
     pub fn pose(&self, module: usize) -> Pose {
-        self.modules[module].placement.pose(self.module_type(module).lattice.pitch)
+        self.modules[module].placement.pose(self.module_type(module).cell().pitch)
     }
 
     /// The occupied cells.

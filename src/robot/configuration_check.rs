@@ -3,8 +3,7 @@
 
 use std::collections::HashMap;
 
-use super::catalogue::Shape;
-use super::configuration::{Configuration, FaceConnection, Port};
+use super::configuration::{Configuration, Environment, FaceConnection, ModuleLoad, Port};
 use super::lattice::neighbour;
 use super::problem::{Fault, Findings, Part, Problem};
 
@@ -15,29 +14,14 @@ impl Configuration {
     pub fn problems(&self) -> Vec<Problem> {
         let mut findings = Findings(Vec::new());
         findings.finite(Part::Configuration, "gravity", self.gravity.as_slice());
-        self.check_environment(&mut findings);
+        self.environment.check(&mut findings);
         self.check_modules(&mut findings);
         self.check_connections(&mut findings);
-        self.check_loads(&mut findings);
+        for (i, load) in self.loads.iter().enumerate() {
+            load.check(&mut findings, i, self.modules.len());
+        }
         findings.finite(Part::Requirement, "margin", &[self.require.margin]);
         findings.0
-    }
-
-    fn check_environment(&self, findings: &mut Findings) {
-        let environment = &self.environment;
-        findings.not_negative(Part::Environment, "module_friction", &[environment.module_friction]);
-        if let Some(ground) = &environment.ground {
-            findings.finite(Part::Ground, "height", &[ground.height]);
-            findings.not_negative(Part::Ground, "friction", &[ground.friction]);
-        }
-        for (i, obstacle) in environment.obstacles.iter().enumerate() {
-            let part = Part::Obstacle(i);
-            let Shape::Cuboid { half_extents } = &obstacle.shape;
-            findings.positive(part, "half_extents", half_extents.as_slice());
-            findings.finite(part, "position", obstacle.pose.translation.vector.as_slice());
-            findings.finite(part, "rotation", obstacle.pose.rotation.coords.as_slice());
-            findings.not_negative(part, "friction", &[obstacle.friction]);
-        }
     }
 
     fn check_modules(&self, findings: &mut Findings) {
@@ -50,7 +34,7 @@ impl Configuration {
         let mut pitch: Option<(usize, f64)> = None;
         for (i, module) in self.modules.iter().enumerate() {
             if findings.in_range(Part::Module(i), "module_type", module.module_type, types.len()) {
-                let own = types[module.module_type].lattice.pitch;
+                let own = types[module.module_type].cell().pitch;
                 let (first, common) = *pitch.get_or_insert((i, own));
                 if own != common {
                     findings.add(Part::Module(i), "module_type", Fault::DifferentPitch { first });
@@ -103,20 +87,39 @@ impl Configuration {
     fn fit(&self, a: Port, b: Port) -> bool {
         let types = [a, b].map(|port| self.modules[port.module].module_type);
         let known = types.iter().all(|&t| {
-            self.catalogue.module_types.get(t).is_some_and(|t| t.lattice.face < self.catalogue.connectors.len())
+            self.catalogue.module_types.get(t).is_some_and(|t| t.cell().face < self.catalogue.connectors.len())
         });
         !known || self.catalogue.face_connector(types[0], types[1]).is_some()
     }
+}
 
-    fn check_loads(&self, findings: &mut Findings) {
-        for (i, load) in self.loads.iter().enumerate() {
-            let part = Part::Load(i);
-            findings.in_range(part, "module", load.module, self.modules.len());
-            findings.finite(part, "force", load.force.as_slice());
-            findings.finite(part, "torque", load.torque.as_slice());
-            if let Some(at) = &load.at {
-                findings.finite(part, "at", at.as_slice());
-            }
+impl Environment {
+    /// Adds everything that is wrong with the environment.
+    pub(super) fn check(&self, findings: &mut Findings) {
+        findings.not_negative(Part::Environment, "module_friction", &[self.module_friction]);
+        if let Some(ground) = &self.ground {
+            findings.finite(Part::Ground, "height", &[ground.height]);
+            findings.not_negative(Part::Ground, "friction", &[ground.friction]);
+        }
+        for (i, obstacle) in self.obstacles.iter().enumerate() {
+            let part = Part::Obstacle(i);
+            obstacle.shape.check(findings, part);
+            findings.finite(part, "position", obstacle.pose.translation.vector.as_slice());
+            findings.finite(part, "rotation", obstacle.pose.rotation.coords.as_slice());
+            findings.not_negative(part, "friction", &[obstacle.friction]);
+        }
+    }
+}
+
+impl ModuleLoad {
+    /// Adds everything that is wrong with the load with this index, on one of so many modules.
+    pub(super) fn check(&self, findings: &mut Findings, index: usize, modules: usize) {
+        let part = Part::Load(index);
+        findings.in_range(part, "module", self.module, modules);
+        findings.finite(part, "force", self.force.as_slice());
+        findings.finite(part, "torque", self.torque.as_slice());
+        if let Some(at) = &self.at {
+            findings.finite(part, "at", at.as_slice());
         }
     }
 }

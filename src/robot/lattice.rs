@@ -64,6 +64,14 @@ impl Face {
         Vec3::from(self.step().map(f64::from))
     }
 
+    /// Axes of a frame on this face: z outwards, x along the axis after the normal's (in the
+    /// order x, y, z, x).
+    pub fn outward_frame(self) -> Rotation {
+        let z = self.normal();
+        let x = Vec3::ith((self.axis() + 1) % 3, 1.0);
+        Rotation::from_rotation_matrix(&Rotation3::from_matrix_unchecked(Matrix3::from_columns(&[x, z.cross(&x), z])))
+    }
+
     /// Index of the axis it is perpendicular to: 0 for x, 1 for y, 2 for z.
     pub const fn axis(self) -> usize {
         match self {

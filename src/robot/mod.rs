@@ -11,16 +11,22 @@ mod catalogue_check;
 mod configuration;
 mod configuration_check;
 mod lattice;
+pub mod linkage;
+mod module_type;
+mod module_type_check;
 mod occupancy;
 mod problem;
+mod shape;
 #[cfg(test)]
 mod tests;
 
 pub use built_in::BUILT_IN;
-pub use catalogue::{BodyType, Catalogue, LatticeType, ModuleType, Shape};
+pub use catalogue::Catalogue;
 pub use configuration::{
     Configuration, Environment, FaceConnection, Goal, Ground, Matching, Module, ModuleLoad, Obstacle, Port, Requirement,
 };
 pub use lattice::{Cell, Face, Orientation, Placement, neighbour};
+pub use module_type::{BodyType, JointType, LatticeType, ModuleType, PortPlace, PortType};
 pub use occupancy::Occupancy;
 pub use problem::{Fault, Part, Problem};
+pub use shape::Shape;

@@ -21,6 +21,12 @@ pub enum Part {
     Connector(usize),
     /// One of [`Catalogue::module_types`](super::Catalogue::module_types).
     ModuleType(usize),
+    /// A body of a module type: the type, then the body.
+    BodyType(usize, usize),
+    /// A joint of a module type: the type, then the joint.
+    JointType(usize, usize),
+    /// A port of a module type: the type, then the port.
+    PortType(usize, usize),
     /// The configuration itself: its gravity, its list of modules.
     Configuration,
     /// The environment, but for its ground and its obstacles.
@@ -103,6 +109,35 @@ pub enum Fault {
     },
     /// The connectors of the two faces are of different models.
     ConnectorsDoNotFit,
+    /// A module type without a body.
+    NoBodies,
+    /// The joints do not make the bodies one tree: a body that no joint leads to, or a loop.
+    NotATree,
+    /// A range that leaves out the position zero, in which body frames coincide.
+    RangeWithoutZero,
+    /// A surface port on a body that is not a ball.
+    SurfaceNotABall,
+    /// A patch connector without points, which takes the corners of a cube's face, on another module.
+    PatchWithoutFace,
+    /// There are more or fewer joint positions than the type has joints.
+    WrongJointCount {
+        /// How many the type has.
+        joints: usize,
+    },
+    /// A joint position beyond the joint's range.
+    BeyondRange {
+        /// Index of the joint.
+        joint: usize,
+    },
+    /// A connection of two ports that do not meet, or meet at an angle at which they do not engage.
+    PortsApart,
+    /// A connection of two ports that no connector can hold together.
+    PortsDoNotFit,
+    /// Two modules overlap.
+    OverlapsModule {
+        /// Index of the other module.
+        other: usize,
+    },
 }
 
 impl Problem {
@@ -123,6 +158,9 @@ impl fmt::Display for Part {
         match self {
             Self::Connector(i) => write!(f, "connectors[{i}]"),
             Self::ModuleType(i) => write!(f, "module_types[{i}]"),
+            Self::BodyType(i, j) => write!(f, "module_types[{i}].bodies[{j}]"),
+            Self::JointType(i, j) => write!(f, "module_types[{i}].joints[{j}]"),
+            Self::PortType(i, j) => write!(f, "module_types[{i}].ports[{j}]"),
             Self::Configuration => f.write_str("configuration"),
             Self::Environment => f.write_str("environment"),
             Self::Ground => f.write_str("ground"),
@@ -157,6 +195,16 @@ impl fmt::Display for Fault {
             Self::FacesApart => f.write_str("the two faces do not coincide"),
             Self::DuplicateConnection { first } => write!(f, "connection {first} joins the same faces"),
             Self::ConnectorsDoNotFit => f.write_str("the connectors of the two faces are of different models"),
+            Self::NoBodies => f.write_str("there are no bodies"),
+            Self::NotATree => f.write_str("the joints must make the bodies one tree"),
+            Self::RangeWithoutZero => f.write_str("the range must contain 0, where the bodies' frames coincide"),
+            Self::SurfaceNotABall => f.write_str("a surface port must sit on a ball"),
+            Self::PatchWithoutFace => f.write_str("a patch without points needs the face of a lattice module"),
+            Self::WrongJointCount { joints } => write!(f, "the type has {joints} joints"),
+            Self::BeyondRange { joint } => write!(f, "joint {joint} is beyond its range"),
+            Self::PortsApart => f.write_str("the two ports do not meet"),
+            Self::PortsDoNotFit => f.write_str("no connector holds the two ports together"),
+            Self::OverlapsModule { other } => write!(f, "overlaps module {other}"),
         }
     }
 }

@@ -108,7 +108,7 @@ fn faces_are_held_by_the_weaker_of_their_connectors() {
     let mut weak = catalogue.connectors[0].clone();
     weak.strength = 1.0;
     catalogue.connectors.push(weak);
-    catalogue.module_types[1].lattice.face = 4;
+    catalogue.module_types[1].lattice.as_mut().expect("a cube").face = 4;
     assert_eq!(catalogue.face_connector(0, 1), Some(4));
     assert_eq!(catalogue.face_connector(1, 0), Some(4));
 }
@@ -166,8 +166,8 @@ fn every_fault_of_a_configuration_is_found_where_it_is() {
         ),
         (
             Box::new(|c| {
-                Arc::make_mut(&mut c.catalogue).module_types[1].lattice =
-                    LatticeType { pitch: 0.1, ..c.catalogue.module_types[0].lattice.clone() };
+                let lattice = LatticeType { pitch: 0.1, ..c.catalogue.module_types[0].cell().clone() };
+                Arc::make_mut(&mut c.catalogue).module_types[1].lattice = Some(lattice);
                 c.modules[3].module_type = 1;
             }),
             one(Part::Module(3), "module_type", Fault::DifferentPitch { first: 0 }),
@@ -280,17 +280,32 @@ fn every_fault_of_a_catalogue_is_found_where_it_is() {
             "name",
             Fault::DuplicateName { first: 0 },
         ),
-        (Box::new(|c| c.module_types[0].body.mass = -1.0), Part::ModuleType(0), "mass", Fault::Negative),
-        (Box::new(|c| c.module_types[0].body.com.x = 0.01), Part::ModuleType(0), "com", Fault::NotSymmetric),
-        (Box::new(|c| c.module_types[0].lattice.pitch = 0.06), Part::ModuleType(0), "half_extents", Fault::NotACell),
-        (Box::new(|c| c.module_types[0].lattice.pitch = -0.05), Part::ModuleType(0), "pitch", Fault::NotPositive),
+        (Box::new(|c| c.module_types[0].bodies[0].mass = -1.0), Part::BodyType(0, 0), "mass", Fault::Negative),
+        (Box::new(|c| c.module_types[0].bodies[0].com.x = 0.01), Part::ModuleType(0), "com", Fault::NotSymmetric),
         (
-            Box::new(|c| c.module_types[0].lattice.face = 9),
+            Box::new(|c| c.module_types[0].lattice.as_mut().expect("a cube").pitch = 0.06),
+            Part::ModuleType(0),
+            "half_extents",
+            Fault::NotACell,
+        ),
+        (
+            Box::new(|c| c.module_types[0].lattice.as_mut().expect("a cube").pitch = -0.05),
+            Part::ModuleType(0),
+            "pitch",
+            Fault::NotPositive,
+        ),
+        (
+            Box::new(|c| c.module_types[0].lattice.as_mut().expect("a cube").face = 9),
             Part::ModuleType(0),
             "face",
             Fault::OutOfRange { index: 9, count: 4 },
         ),
-        (Box::new(|c| c.module_types[0].lattice.hinge = Some(0)), Part::ModuleType(0), "hinge", Fault::HingeNotBox),
+        (
+            Box::new(|c| c.module_types[0].lattice.as_mut().expect("a cube").hinge = Some(0)),
+            Part::ModuleType(0),
+            "hinge",
+            Fault::HingeNotBox,
+        ),
     ];
     for (change, part, field, fault) in cases {
         let mut catalogue = Catalogue::cube();

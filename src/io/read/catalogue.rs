@@ -13,7 +13,7 @@ use super::faults;
 use super::names::Names;
 use super::rotation::vector;
 use crate::robot::{BUILT_IN, BodyType, Catalogue, LatticeType, ModuleType, Shape};
-use crate::spatial::Vec3;
+use crate::spatial::{Pose, Vec3};
 
 /// Reads a catalogue that is a file of its own.
 pub(super) fn read(root: &Place<'_>, findings: &mut Findings) -> Option<Catalogue> {
@@ -107,7 +107,7 @@ impl Reader<'_> {
         }
         let body = body(wire, place, findings);
         let lattice = self.lattice(wire, place, findings);
-        Some(ModuleType { name: name.to_string(), body: body?, lattice: lattice? })
+        Some(ModuleType::of_lattice(name, body?, lattice?))
     }
 
     fn lattice(&self, wire: &wire::ModuleType, place: &Place<'_>, findings: &mut Findings) -> Option<LatticeType> {
@@ -155,7 +155,7 @@ fn body(wire: &wire::ModuleType, place: &Place<'_>, findings: &mut Findings) -> 
     };
     let shape = shape(&body.shape, &place.index(0).key("shape"), findings)?;
     let com = body.com_m.map_or_else(Vec3::zeros, vector);
-    Some(BodyType { name: body.name.clone(), mass: body.mass_kg.0, com, shape })
+    Some(BodyType { name: body.name.clone(), mass: body.mass_kg.0, com, shape, shape_pose: Pose::identity() })
 }
 
 /// The shape, if this version knows how to collide it.

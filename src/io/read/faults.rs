@@ -11,6 +11,9 @@ pub(super) fn of_catalogue(problems: &[Problem], place: &Place<'_>, findings: &m
         let part = match problem.part {
             Part::Connector(index) => place.key("connectors").entry(index),
             Part::ModuleType(index) => place.key("module_types").entry(index),
+            Part::BodyType(index, body) => place.key("module_types").entry(index).key("bodies").index(body),
+            Part::JointType(index, joint) => place.key("module_types").entry(index).key("joints").index(joint),
+            Part::PortType(index, port) => place.key("module_types").entry(index).key("ports").index(port),
             _ => place.clone(),
         };
         report(problem, &field(&part, problem.field), None, findings);
@@ -72,6 +75,7 @@ fn describe(problem: &Problem, configuration: Option<&Configuration>) -> Option<
         | Fault::Negative
         | Fault::OutOfRange { .. }
         | Fault::DuplicateName { .. }
+        | Fault::NoBodies
         | Fault::NoModules => return None,
         Fault::OriginOutsidePatch => (
             codes::OFF_CENTRE,
@@ -135,5 +139,44 @@ fn describe(problem: &Problem, configuration: Option<&Configuration>) -> Option<
             owned("the connectors of the two faces are of different models"),
             "only connectors of one model engage: leave this connection out",
         ),
+        Fault::NotATree => (
+            codes::MIXED,
+            owned("the joints do not make the bodies one tree"),
+            "n bodies need n - 1 joints, each leading to a body that no other joint leads to",
+        ),
+        Fault::RangeWithoutZero => (
+            codes::OUT_OF_RANGE,
+            owned("the range leaves out 0"),
+            "at 0 the frames of all bodies coincide: count angles from a position within the range",
+        ),
+        Fault::SurfaceNotABall => (
+            codes::UNSUPPORTED,
+            owned("connectors engage anywhere on the surface of a ball only"),
+            "make the body's shape a \"ball\", or give the port a position and an axis",
+        ),
+        Fault::PatchWithoutFace => (
+            codes::MIXED,
+            owned("a `patch` without points takes the corners of a cube's face, and this port has none"),
+            "give the connector `points_m`",
+        ),
+        Fault::WrongJointCount { joints } => {
+            (codes::MIXED, format!("its type has {joints} joints"), "give each joint one position")
+        }
+        Fault::BeyondRange { joint } => {
+            (codes::OUT_OF_RANGE, format!("joint number {} is beyond its range", joint + 1), "see its `range_deg`")
+        }
+        Fault::PortsApart => (
+            codes::APART,
+            owned("the two ports do not meet"),
+            "ports meet at one point, looking at each other, at an angle at which they engage; a port meets a surface where it lies on it and looks at its centre",
+        ),
+        Fault::PortsDoNotFit => (
+            codes::MIXED,
+            owned("no connector holds these two ports together"),
+            "two ports at points need connectors of one model, a port on a surface needs a connector",
+        ),
+        Fault::OverlapsModule { other } => {
+            (codes::OVERLAP, format!("overlaps {}", module(other)), "two modules cannot be in one place")
+        }
     })
 }

@@ -113,7 +113,7 @@ fn catalogue(catalogue: &Catalogue) -> wire::CatalogueRef {
 }
 
 fn module_type(catalogue: &Catalogue, module_type: &ModuleType) -> wire::ModuleType {
-    let ModuleType { body, lattice, .. } = module_type;
+    let (body, lattice) = (module_type.body(), module_type.cell());
     let motions = [(lattice.slide, wire::Motion::Slide), (lattice.pivot, wire::Motion::Pivot)];
     let connector = |index: usize| catalogue.connectors[index].name.clone();
     wire::ModuleType {

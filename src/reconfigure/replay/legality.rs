@@ -82,7 +82,7 @@ fn detach(before: &Configuration, connection: FaceConnection) -> Result<Transiti
 
 fn slide(before: &Configuration, module: usize, to: Cell) -> Result<Transition, Fault> {
     let mover = free_module(before, module)?;
-    if !before.module_type(module).lattice.slide {
+    if !before.module_type(module).cell().slide {
         return Err(Fault::Unable);
     }
     let from = mover.placement.cell;
@@ -117,7 +117,7 @@ fn slide(before: &Configuration, module: usize, to: Cell) -> Result<Transition, 
 fn pivot(before: &Configuration, module: usize, support: usize, to: Cell) -> Result<Transition, Fault> {
     let mover = free_module(before, module)?;
     let types = [module, support].map(|m| before.modules[m].module_type);
-    if !before.module_type(module).lattice.pivot || before.catalogue.hinge(types[0], types[1]).is_none() {
+    if !before.module_type(module).cell().pivot || before.catalogue.hinge(types[0], types[1]).is_none() {
         return Err(Fault::Unable);
     }
     let (from, base) = (mover.placement.cell, before.modules[support].placement.cell);

@@ -126,7 +126,7 @@ impl<'a> Checker<'a> {
 
     /// Books the first thing that the moving module hits.
     fn collide(&mut self, action: usize, before: &Configuration, path: &Path) {
-        let solid = |m: usize| Solid::new(before.module_type(m).body.shape.clone(), before.pose(m));
+        let solid = |m: usize| Solid::new(before.module_type(m).body().shape.clone(), before.pose(m));
         let environment = &before.environment;
         let others = (0..before.modules.len()).filter(|&m| m != path.module);
         let modules = others.map(|m| (Touched::Module(m), solid(m)));

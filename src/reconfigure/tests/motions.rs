@@ -28,7 +28,7 @@ fn all_moves(from: Cell) -> Vec<Move> {
 
 fn cube_at(cell: Cell) -> Solid {
     let configuration = cubes(&[cell], 0);
-    Solid::new(configuration.module_type(0).body.shape.clone(), configuration.pose(0))
+    Solid::new(configuration.module_type(0).body().shape.clone(), configuration.pose(0))
 }
 
 /// The room of a move is exactly where a cube would be hit on the way.
@@ -81,7 +81,7 @@ fn legal_by_definition(configuration: &crate::robot::Configuration) -> BTreeSet<
                 let Ok(next) = transition(configuration, &action) else { continue };
                 let path = next.path.unwrap();
                 let solid =
-                    |m: usize| Solid::new(configuration.module_type(m).body.shape.clone(), configuration.pose(m));
+                    |m: usize| Solid::new(configuration.module_type(m).body().shape.clone(), configuration.pose(m));
                 let others = (0..count).filter(|&m| m != module).map(solid).collect();
                 let around = Surroundings { solids: others, ground: None };
                 if first_collision(&solid(module), &path.motion, &around).is_none() {
