@@ -105,6 +105,22 @@ pub enum LoadRange {
     },
 }
 
+impl LoadRange {
+    /// Whether the structure stands under so much of the force; `None` where that is not known.
+    pub fn contains(&self, force: f64) -> Option<bool> {
+        match self {
+            Self::Between { lowest, highest } => {
+                let (low, high) = (lowest.force, highest.force);
+                let inside = low.upper <= force && force <= high.lower;
+                let outside = force < low.lower || force > high.upper;
+                (inside || outside).then_some(inside)
+            }
+            Self::Nowhere { .. } => Some(false),
+            Self::Undecided { .. } => None,
+        }
+    }
+}
+
 /// Width of an end's bracket that counts as known, as a share of the larger of the forces of the
 /// range and a thousandth of those that the structure is made for.
 pub const RANGE_GAP: f64 = 1e-6;
