@@ -200,7 +200,7 @@ fn load_over_strength(structure: &Structure, block: &Block, loads: &[BodyLoad]) 
 
 /// The motion in which a body without any support is carried off by its load;
 /// `None` when it is in balance.
-fn drift(load: &BodyLoad) -> Option<Twist> {
+pub(super) fn drift(load: &BodyLoad) -> Option<Twist> {
     let balanced = load.wrench.force.norm() <= DATA * load.force_size.norm()
         && load.wrench.torque.norm() <= DATA * load.torque_size.norm();
     (!balanced).then_some(Twist::new(load.wrench.force, load.wrench.torque))
