@@ -42,6 +42,15 @@ pub(super) struct Ladder<'p> {
     demands: Vec<f64>,
     mechanism: Vec<Twist>,
     shares: Vec<f64>,
+    /// The springs that balanced it.
+    give: Option<Give>,
+}
+
+/// Springs that balanced a neighbouring block of the same bodies.
+pub(super) struct Sprung<'m> {
+    pub give: &'m Give,
+    /// Of each link, if it was there.
+    pub springs: Vec<Option<usize>>,
 }
 
 /// What carried fields say about a block.
@@ -49,6 +58,8 @@ pub(super) struct Climbed {
     pub part: Part,
     /// Forces at the points of its faces, one face after the other.
     pub points: Vec<Vec3>,
+    /// The springs that balanced it, where none that were known did.
+    pub give: Option<Give>,
 }
 
 impl<'p> Ladder<'p> {
@@ -62,17 +73,19 @@ impl<'p> Ladder<'p> {
             demands: vec![0.0; links],
             mechanism: vec![Twist::ZERO; bodies],
             shares: vec![0.0; links],
+            give: None,
         }
     }
 
     /// Tries `twists`, if any, and `wrenches`; where the neighbour `falls`, the twists first.
-    /// `known` has what the points of a face carried.
+    /// `known` has what the points of a face carried, `sprung` what balanced them.
     pub(super) fn climb(
         mut self,
         twists: Option<Vec<Twist>>,
         wrenches: Vec<Wrench>,
         known: impl Fn(Link) -> Vec<Vec3>,
         falls: bool,
+        sprung: Option<Sprung<'_>>,
     ) -> Climbed {
         let twists = twists.unwrap_or_default();
         if falls {
@@ -84,7 +97,12 @@ impl<'p> Ladder<'p> {
         }
         if let (false, Some(level)) = (self.answered(), level(self.question)) {
             let field = Field::new(&self.problem, wrenches, level, known);
-            self.repair(field, level, &twists);
+            if let Some(sprung) = sprung {
+                self.balance(&field, level, &sprung);
+            }
+            if !self.answered() {
+                self.repair(field, level, &twists);
+            }
         } else if !falls && !self.answered() {
             self.try_motion(&twists);
         }
@@ -103,7 +121,7 @@ impl<'p> Ladder<'p> {
             decided_by: Rung::CarriedOver,
             unproved: None,
         };
-        Climbed { part, points: self.field.points }
+        Climbed { part, points: self.field.points, give: self.give }
     }
 
     fn answered(&self) -> bool {
@@ -117,18 +135,25 @@ impl<'p> Ladder<'p> {
         }
     }
 
+    /// Upper bound from the field balanced by springs that are known.
+    fn balance(&mut self, field: &Field, level: f64, sprung: &Sprung<'_>) {
+        let mut field = field.clone();
+        if sprung.give.refine_by(&self.problem, &mut field, |link| sprung.springs[link]) {
+            self.keep_upper(&field, level);
+        }
+    }
+
     /// Upper bounds from the field balanced and put back into its cones in turns, lower
     /// bounds from the way in which the loads win where that is not enough.
     fn repair(&mut self, mut field: Field, level: f64, twists: &[Twist]) {
-        let mut give: Option<Give> = None;
         for round in 0..ROUNDS {
             let rooms = Rooms::new(&self.problem, &field, level);
-            let give = match &mut give {
-                Some(give) => {
+            let give = match self.give.take() {
+                Some(mut give) => {
                     give.renew(rooms);
                     give
                 }
-                None => give.insert(Give::new(&self.problem, rooms)),
+                None => Give::new(&self.problem, rooms),
             };
             let share = CENTRING[round.min(1)];
             let balancing = give.balancing(&self.problem, &field, share);
@@ -136,7 +161,8 @@ impl<'p> Ladder<'p> {
             if give.refine(&self.problem, &mut field) {
                 self.keep_upper(&field, level);
             }
-            if self.answered() {
+            let give = self.give.insert(give);
+            if self.question.is_answered_by(&self.bracket) {
                 return;
             }
             let centring = give.centring(&self.problem);
