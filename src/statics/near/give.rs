@@ -20,7 +20,7 @@ use super::field::{Field, face};
 use super::room::Rooms;
 
 /// Imbalance, relative to what flows through a body, that needs no correction.
-const BALANCED: f64 = 1e-12;
+const BALANCED: f64 = 1e-11;
 
 /// Rounds of correction after a change; each is as accurate as the factorisation.
 const REFINEMENTS: usize = 2;
@@ -94,7 +94,7 @@ impl Give {
     ) -> bool {
         for _ in 0..REFINEMENTS {
             let lacking = lacking(problem, &field.wrenches);
-            if imbalance(problem, &lacking) <= BALANCED {
+            if balances(problem, &lacking) {
                 return true;
             }
             field.add(&self.answer(problem, &lacking, &spring).field, 1.0);
@@ -161,7 +161,7 @@ pub(super) fn lacking(problem: &Problem<'_>, field: &[Wrench]) -> Vec<Wrench> {
 
 /// Whether `lacking` is nothing but rounding.
 pub(super) fn balances(problem: &Problem<'_>, lacking: &[Wrench]) -> bool {
-    imbalance(problem, lacking) <= 10.0 * BALANCED
+    imbalance(problem, lacking) <= BALANCED
 }
 
 /// The largest of what bodies lack, relative to what flows through them.

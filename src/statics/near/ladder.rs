@@ -10,6 +10,7 @@ use super::super::connector::Connector;
 use super::super::demand::{WrenchError, demand_at_most};
 use super::super::part::Part;
 use super::super::rung::Rung;
+use super::super::structure::Structure;
 use super::field::{Field, face};
 use super::give::{Give, balances, lacking};
 use super::opening::Opening;
@@ -19,6 +20,9 @@ use super::room::Rooms;
 /// Rounds of putting wrenches back into their cones and balancing them again.
 /// Each costs a factorisation; later ones rarely decide.
 const ROUNDS: usize = 4;
+
+/// Demand, over the level that is asked for, from which on more rounds are hopeless after each.
+const HOPELESS: [f64; ROUNDS] = [f64::INFINITY, 2.5, 1.2, 0.0];
 
 /// Share of the way to the middles of the cones in the first round, which starts
 /// from a field that was good where it comes from, and in later ones.
@@ -158,7 +162,9 @@ impl<'p> Ladder<'p> {
             let share = CENTRING[round.min(1)];
             let balancing = give.balancing(&self.problem, &field, share);
             field.add(&balancing.field, 1.0);
-            if give.refine(&self.problem, &mut field) {
+            // Where it is too large already, the last digits do not matter.
+            let most = self.most(&field, level);
+            if most.is_some_and(|most| most <= level) && give.refine(&self.problem, &mut field) {
                 self.keep_upper(&field, level);
             }
             let give = self.give.insert(give);
@@ -174,7 +180,7 @@ impl<'p> Ladder<'p> {
             if round == 0 && !twists.is_empty() && !self.answered() {
                 self.keep_lower(&opening, twists.to_vec());
             }
-            if self.answered() {
+            if self.answered() || most.is_some_and(|most| most > HOPELESS[round] * level) {
                 return;
             }
             put_back(&self.problem, &mut field, level);
@@ -212,16 +218,15 @@ impl<'p> Ladder<'p> {
         }
     }
 
-    /// Keeps what a balanced field proves, of faces by their points.
+    /// The largest demand in a field, if it is known and finite.
+    fn most(&self, field: &Field, level: f64) -> Option<f64> {
+        let demands = self.problem.demands(&field.wrenches, demand(self.problem.structure, &field.points, level))?;
+        Some(demands.into_iter().fold(0.0, f64::max))
+    }
+
+    /// Keeps what a balanced field proves.
     fn keep_upper(&mut self, field: &Field, level: f64) {
-        let structure = self.problem.structure;
-        let mut points = &field.points[..];
-        let demand = |link: Link, connector: &Connector, wrench: &Wrench, error: &WrenchError| {
-            let Some(face) = face(structure, link) else { return demand_at_most(connector, wrench, error, level) };
-            let (own, others) = points.split_at(face.points.len());
-            points = others;
-            face.at_most(wrench, own, level).unwrap_or_else(|| demand_at_most(connector, wrench, error, level))
-        };
+        let demand = demand(self.problem.structure, &field.points, level);
         let Some((upper, demands)) = self.problem.upper_bound_by(&field.wrenches, self.mechanism(), demand) else {
             return;
         };
@@ -230,5 +235,19 @@ impl<'p> Ladder<'p> {
             self.field = field.clone();
             self.demands = demands;
         }
+    }
+}
+
+/// Demands of connections, of faces by the forces at their `points`.
+fn demand(
+    structure: &Structure,
+    mut points: &[Vec3],
+    level: f64,
+) -> impl FnMut(Link, &Connector, &Wrench, &WrenchError) -> f64 {
+    move |link, connector, wrench, error| {
+        let Some(face) = face(structure, link) else { return demand_at_most(connector, wrench, error, level) };
+        let (own, others) = points.split_at(face.points.len());
+        points = others;
+        face.at_most(wrench, own, level).unwrap_or_else(|| demand_at_most(connector, wrench, error, level))
     }
 }
