@@ -9,15 +9,17 @@ use serde_json::Value;
 use super::{layout, wire};
 
 /// The formats that have a schema.
-const NAMES: [&str; 7] = ["structure", "catalogue", "configuration", "plan", "check", "certificate", "errors"];
+const NAMES: [&str; 8] =
+    ["structure", "catalogue", "configuration", "plan", "check", "load-range", "certificate", "errors"];
 
-static SCHEMAS: LazyLock<[Value; 7]> = LazyLock::new(|| {
+static SCHEMAS: LazyLock<[Value; 8]> = LazyLock::new(|| {
     [
         generate::<wire::Structure>(),
         generate::<wire::Catalogue>(),
         generate::<wire::Configuration>(),
         generate::<wire::Plan>(),
         generate::<wire::Check>(),
+        generate::<wire::LoadRange>(),
         generate::<wire::Certificate>(),
         generate::<wire::Errors>(),
     ]

@@ -8,7 +8,10 @@ mod check;
 mod exit;
 mod explain;
 mod files;
+mod gives_way;
+mod load_range;
 mod naming;
+mod order;
 mod output;
 mod progress;
 mod schema;
@@ -30,6 +33,7 @@ fn main() -> ExitCode {
     let exit = match (arguments.command, arguments.planning) {
         (Some(Command::Verify(verify)), _) => verify::run(&verify),
         (Some(Command::Check(check)), _) => check::run(&check),
+        (Some(Command::LoadRange(range)), _) => load_range::run(&range),
         (Some(Command::Schema(schema)), _) => schema::run(&schema),
         (None, Some(planning)) => search::run(&planning),
         (None, None) => {
