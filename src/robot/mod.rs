@@ -20,7 +20,7 @@ mod shape;
 #[cfg(test)]
 mod tests;
 
-pub use built_in::BUILT_IN;
+pub use built_in::{BUILT_IN, rofi};
 pub use catalogue::Catalogue;
 pub use configuration::{
     Configuration, Environment, FaceConnection, Goal, Ground, Matching, Module, ModuleLoad, Obstacle, Port, Requirement,

@@ -3,17 +3,19 @@
 //! Every number says where it comes from, or that it is an estimate.
 
 mod cube;
+pub mod rofi;
 
 use super::catalogue::Catalogue;
 
 /// Names of the built-in catalogues.
-pub const BUILT_IN: [&str; 1] = ["cube"];
+pub const BUILT_IN: [&str; 2] = ["cube", "rofi"];
 
 impl Catalogue {
     /// The built-in catalogue of this name, if there is one.
     pub fn built_in(name: &str) -> Option<Self> {
         match name {
             "cube" => Some(Self::cube()),
+            "rofi" => Some(Self::rofi()),
             _ => None,
         }
     }

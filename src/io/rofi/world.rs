@@ -1,0 +1,115 @@
+//! What the platform's files say, in its own terms: before frames and catalogues.
+
+use super::super::codes::Code;
+use super::super::findings::{Findings, Place};
+use super::super::json::Span;
+use crate::spatial::Pose;
+
+/// A place in a file that problems are shown at.
+#[derive(Clone, Debug)]
+pub(in crate::io) struct Mark<'a> {
+    place: Place<'a>,
+    span: Span,
+}
+
+impl<'a> Mark<'a> {
+    /// A part of a text that is no JSON; `root` is all of it.
+    pub(super) fn in_text(root: Place<'a>, span: Span) -> Self {
+        Self { place: root, span }
+    }
+
+    /// Adds a problem there.
+    pub(super) fn report(&self, findings: &mut Findings, code: Code, message: impl Into<String>, hint: impl Into<String>) {
+        findings.add_at(&self.place, self.span, code, message.into(), Some(hint.into()));
+    }
+}
+
+impl<'a> From<Place<'a>> for Mark<'a> {
+    fn from(place: Place<'a>) -> Self {
+        let span = place.span();
+        Self { place, span }
+    }
+}
+
+/// Modules, how they are joined, and where they are.
+#[derive(Clone, Debug)]
+pub(in crate::io) struct World<'a> {
+    pub(super) modules: Vec<Module<'a>>,
+    pub(super) joints: Joints<'a>,
+    /// Where components are. Without any, the first module's shoe A is the origin.
+    pub(super) anchors: Vec<Anchor<'a>>,
+    pub(super) whole: Mark<'a>,
+}
+
+/// A module.
+#[derive(Clone, Debug)]
+pub(super) struct Module<'a> {
+    pub(super) id: String,
+    pub(super) kind: Kind<'a>,
+    pub(super) mark: Mark<'a>,
+}
+
+/// What a module is.
+#[derive(Clone, Debug)]
+pub(super) enum Kind<'a> {
+    /// A universal module with its joints alpha, beta and gamma in degrees, and where the file says so.
+    Universal([(f64, Mark<'a>); 3]),
+    /// A pad with so many docks, width times height.
+    Pad([u32; 2]),
+}
+
+/// Which docks are joined.
+#[derive(Clone, Debug)]
+pub(super) enum Joints<'a> {
+    /// Those of a list.
+    Listed(Vec<Joint<'a>>),
+    /// All that face each other.
+    Facing,
+}
+
+/// Two joined docks.
+#[derive(Clone, Debug)]
+pub(super) struct Joint<'a> {
+    /// Index of the module and number of its dock, which is that of the port.
+    pub(super) ends: [(usize, usize); 2],
+    /// By how many quarter turns the second port is turned against the first, right-handed about the first
+    /// one's outward axis.
+    pub(super) quarters: u8,
+    pub(super) mark: Mark<'a>,
+}
+
+/// Where a component of a module is.
+#[derive(Clone, Debug)]
+pub(super) struct Anchor<'a> {
+    pub(super) module: usize,
+    /// Number of the component, from 0: docks, then shoe A, body A, body B, shoe B.
+    pub(super) component: usize,
+    /// Pose of the component in the world, in cells.
+    pub(super) pose: Pose,
+    pub(super) mark: Mark<'a>,
+}
+
+/// The docks of a universal module, in the order of their numbers.
+pub(super) const DOCKS: [&str; 6] = ["A-X", "A+X", "A-Z", "B-X", "B+X", "B-Z"];
+
+/// How many components a universal module has.
+pub(super) const COMPONENTS: usize = 10;
+
+/// Names of the orientations at which docks are joined, in the order of their numbers.
+pub(super) const ORIENTATIONS: [&str; 4] = ["North", "East", "South", "West"];
+
+/// The quarter turns between two ports that an orientation stands for, by its number. The platform turns
+/// the second dock by 180, -90, 0 and 90 degrees about the axis from the first one's face backwards, after
+/// half a turn: 180 degrees less that, between the ports.
+pub(super) const QUARTERS: [u8; 4] = [0, 3, 2, 1];
+
+impl Kind<'_> {
+    /// How many docks it has.
+    pub(super) fn docks(&self) -> usize {
+        match self {
+            Self::Universal(_) => DOCKS.len(),
+            // Pads that are larger than any file were refused when they were read.
+            Self::Pad([width, height]) => *width as usize * *height as usize,
+        }
+    }
+}
