@@ -30,11 +30,13 @@ mod write;
 pub use certificate_document::CertificateDocument;
 pub use codes::{CODES, Code};
 pub use diagnostics::{Diagnostic, Diagnostics};
-pub use document::{Checkable, LARGEST_FILE, NamedStructure, Problem, Resolve, SourceFile, Verifiable, no_references};
+pub use document::{
+    Checkable, LARGEST_FILE, LatticeProblem, LinkageProblem, NamedStructure, Problem, Resolve,
+    SourceFile, Verifiable, no_references,};
 pub use plan_document::{Contradiction, PlanDocument};
 pub use read::{
-    read_catalogue, read_certificate, read_checkable, read_configuration, read_plan, read_problem, read_structure,
-    read_verifiable,
+    read_catalogue, read_certificate, read_checkable, read_configuration, read_linkage, read_plan, read_problem,
+    read_structure, read_verifiable,
 };
 pub use schema::{schema, schema_names};
 pub use turn::AxisAngle;

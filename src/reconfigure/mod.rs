@@ -13,11 +13,14 @@ mod assembly_tests;
 mod compose;
 mod course;
 mod domain;
+mod engines;
 mod goal;
 mod heuristic;
 mod layout;
+pub mod linkage;
 mod local;
 mod moves;
+mod options;
 mod oracle;
 mod plan;
 mod primitive;
@@ -32,11 +35,13 @@ mod surface;
 mod trace;
 
 pub use action::Action;
+pub use engines::MARGIN_TOLERANCE;
 pub use layout::{Bond, Layout, Placed};
 pub use moves::{Ability, Motion, Move, Turn, fitting};
+pub use options::{Event, Options, Reduction};
 pub use plan::{Bottleneck, Limit, Objective, Outcome, Plan, PlannedAction, Proof, Report, Statistics};
 pub use refusal::{Impossible, Refusal, Which};
-pub use solve::{Event, MARGIN_TOLERANCE, Options, Reduction, solve};
+pub use solve::solve;
 pub use step::Step;
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! What planning returns: plans, what they are worth, and what was proved.
 //!
-//! Plain data.
+//! Plain data, whatever the robot: `A` is an action on its modules and `C` what names a
+//! connection of it. Without parameters they are those of a lattice.
 
 use crate::robot::FaceConnection;
 use crate::statics::Bracket;
@@ -22,9 +23,9 @@ pub enum Objective {
 
 /// An action with what it is worth.
 #[derive(Clone, Debug, PartialEq)]
-pub struct PlannedAction {
+pub struct PlannedAction<A = Action> {
     /// What is done.
-    pub action: Action,
+    pub action: A,
     /// Smallest margin of the states during and after it; `None` where plans
     /// are made by geometry alone.
     pub margin: Option<Bracket>,
@@ -35,37 +36,37 @@ pub struct PlannedAction {
 
 /// Where a plan's margin is attained.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Bottleneck {
+pub struct Bottleneck<C = FaceConnection> {
     /// Index of the action; `None` for the start as it is.
     pub action: Option<usize>,
     /// Phase of the action, from 0 to 1.
     pub phase: f64,
     /// The weakest connection then, by its ports; of a sliding or pivoting module, the
     /// faces that slide over each other or that the hinge joins. `None` when nothing holds.
-    pub connection: Option<FaceConnection>,
+    pub connection: Option<C>,
 }
 
 /// A sequence of actions from the start to the goal.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Plan {
+pub struct Plan<A = Action, C = FaceConnection> {
     /// Smallest margin of all transient states, the start included; `None`
     /// where plans are made by geometry alone.
     pub margin: Option<Bracket>,
     /// How many of the actions are moves.
     pub moves: u32,
     /// Where the margin is attained; of equals the first.
-    pub bottleneck: Option<Bottleneck>,
+    pub bottleneck: Option<Bottleneck<C>>,
     /// What to do.
-    pub actions: Vec<PlannedAction>,
+    pub actions: Vec<PlannedAction<A>>,
 }
 
 /// How planning ended.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Outcome {
+pub enum Outcome<C = FaceConnection> {
     /// A plan was found and is proved to be the best.
     Solved,
     /// It is proved that there is none in this action set.
-    Impossible(Impossible),
+    Impossible(Impossible<C>),
     /// Neither; the plan, if there is one, is the best so far.
     OutOfBudget(Limit),
 }
@@ -111,18 +112,18 @@ impl Statistics {
 
 /// The answer to a planning problem.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Report {
+pub struct Report<A = Action, C = FaceConnection> {
     /// How it ended.
-    pub outcome: Outcome,
+    pub outcome: Outcome<C>,
     /// What was asked for.
     pub objective: Objective,
     /// Margin that every transient state must have; `None` where plans are made
     /// by geometry alone.
     pub required: Option<f64>,
     /// The best plan found.
-    pub plan: Option<Plan>,
+    pub plan: Option<Plan<A, C>>,
     /// Further plans, best first, that differ in more than the order of independent moves.
-    pub alternatives: Vec<Plan>,
+    pub alternatives: Vec<Plan<A, C>>,
     /// What ended the search for further plans before there were as many as
     /// asked for; `None` where these are all that exist, or enough.
     pub alternatives_cut_by: Option<Limit>,
@@ -130,4 +131,26 @@ pub struct Report {
     pub proof: Proof,
     /// What it took.
     pub statistics: Statistics,
+}
+
+impl<A, C> Report<A, C> {
+    /// The report of a problem that is proved to have no plan before any search.
+    pub(super) fn impossible(objective: Objective, required: Option<f64>, reason: Impossible<C>) -> Self {
+        Self {
+            outcome: Outcome::Impossible(reason),
+            objective,
+            required,
+            plan: None,
+            alternatives: Vec::new(),
+            alternatives_cut_by: None,
+            proof: Proof::NOTHING_TO_FIND,
+            statistics: Statistics::default(),
+        }
+    }
+}
+
+impl Proof {
+    /// What holds for all plans when there are none.
+    pub(super) const NOTHING_TO_FIND: Self =
+        Self { optimal: false, margin_at_most: f64::NEG_INFINITY, moves_at_least: u32::MAX };
 }

@@ -59,9 +59,9 @@ pub enum Which {
     Goal,
 }
 
-/// Why there is no plan.
+/// Why there is no plan. `C` names a connection of the robot.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Impossible {
+pub enum Impossible<C = FaceConnection> {
     /// Start and goal have another number of modules of one kind.
     ModulesDiffer {
         /// The module type.
@@ -87,7 +87,7 @@ pub enum Impossible {
         /// The margin required.
         required: f64,
         /// The connection that fails first, if it is one; by ports of the start or the goal.
-        connection: Option<FaceConnection>,
+        connection: Option<C>,
     },
     /// Every sequence of actions was tried, or proved too weak.
     Exhausted {
@@ -98,21 +98,21 @@ pub enum Impossible {
 
 /// Why a problem is not searched.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Rejection {
+pub enum Rejection<C = FaceConnection> {
     /// Bad input.
     Refused(Refusal),
     /// Proved to have no plan.
-    Impossible(Impossible),
+    Impossible(Impossible<C>),
 }
 
-impl From<Refusal> for Rejection {
+impl<C> From<Refusal> for Rejection<C> {
     fn from(refusal: Refusal) -> Self {
         Self::Refused(refusal)
     }
 }
 
-impl From<Impossible> for Rejection {
-    fn from(impossible: Impossible) -> Self {
+impl<C> From<Impossible<C>> for Rejection<C> {
+    fn from(impossible: Impossible<C>) -> Self {
         Self::Impossible(impossible)
     }
 }
@@ -154,7 +154,7 @@ impl fmt::Display for Refusal {
 
 impl std::error::Error for Refusal {}
 
-impl fmt::Display for Impossible {
+impl<C> fmt::Display for Impossible<C> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::ModulesDiffer { module_type, start, goal } => {

@@ -20,7 +20,7 @@ impl Catalogue {
         }
         findings.distinct(Part::ModuleType, "name", self.module_types.iter().map(|t| t.name.as_str()));
         for (i, module_type) in self.module_types.iter().enumerate() {
-            module_type.check(&mut findings, i, self.connectors.len());
+            module_type.check(&mut findings, i, &self.connectors);
             self.check_module_type(&mut findings, Part::ModuleType(i), module_type);
         }
         findings.0

@@ -120,6 +120,13 @@ pub struct LatticeType {
     pub pivot: bool,
 }
 
+impl PortType {
+    /// Whether it is at a point rather than on a surface.
+    pub const fn is_point(&self) -> bool {
+        matches!(self.place, PortPlace::Point { .. })
+    }
+}
+
 /// A kind of module: bodies, joints between them, and ports.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModuleType {

@@ -2,13 +2,15 @@
 
 use petgraph::unionfind::UnionFind;
 
+use crate::statics::{Connector, Model};
+
 use super::module_type::{JointType, ModuleType, PortPlace, PortType};
 use super::problem::{Fault, Findings, Part};
 
 impl ModuleType {
-    /// Adds everything that is wrong with the module type with this index, in a catalogue of so
-    /// many connectors.
-    pub(super) fn check(&self, findings: &mut Findings, index: usize, connectors: usize) {
+    /// Adds everything that is wrong with the module type with this index, in a catalogue of these
+    /// connectors.
+    pub(super) fn check(&self, findings: &mut Findings, index: usize, connectors: &[Connector]) {
         let part = Part::ModuleType(index);
         if self.bodies.is_empty() {
             findings.add(part, "bodies", Fault::NoBodies);
@@ -51,10 +53,14 @@ impl ModuleType {
         }
     }
 
-    fn check_port(&self, findings: &mut Findings, part: Part, port: &PortType, connectors: usize) {
+    fn check_port(&self, findings: &mut Findings, part: Part, port: &PortType, connectors: &[Connector]) {
         let known = findings.in_range(part, "body", port.body, self.bodies.len());
-        if let Some(connector) = port.connector {
-            findings.in_range(part, "connector", connector, connectors);
+        if let Some(connector) = port.connector
+            && findings.in_range(part, "connector", connector, connectors.len())
+            && self.lattice.is_none()
+            && matches!(&connectors[connector].model, Model::Patch { points, .. } if points.is_empty())
+        {
+            findings.add(part, "connector", Fault::PatchWithoutFace);
         }
         match &port.place {
             PortPlace::Point { frame, orientations } => {

@@ -117,6 +117,8 @@ pub enum Fault {
     RangeWithoutZero,
     /// A surface port on a body that is not a ball.
     SurfaceNotABall,
+    /// A patch connector without points, which takes the corners of a cube's face, on another module.
+    PatchWithoutFace,
     /// There are more or fewer joint positions than the type has joints.
     WrongJointCount {
         /// How many the type has.
@@ -197,6 +199,7 @@ impl fmt::Display for Fault {
             Self::NotATree => f.write_str("the joints must make the bodies one tree"),
             Self::RangeWithoutZero => f.write_str("the range must contain 0, where the bodies' frames coincide"),
             Self::SurfaceNotABall => f.write_str("a surface port must sit on a ball"),
+            Self::PatchWithoutFace => f.write_str("a patch without points needs the face of a lattice module"),
             Self::WrongJointCount { joints } => write!(f, "the type has {joints} joints"),
             Self::BeyondRange { joint } => write!(f, "joint {joint} is beyond its range"),
             Self::PortsApart => f.write_str("the two ports do not meet"),

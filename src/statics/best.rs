@@ -62,6 +62,20 @@ impl Best {
 
     /// Bounds from an iterate, and from what its motion says about clusters.
     pub(super) fn improve(&mut self, problem: &Problem<'_>, iterate: &Iterate, question: Question) {
+        self.prove(problem, iterate);
+        let twists = problem.program.twists(&iterate.v);
+        if !self.answers(question) && self.upper.is_finite() {
+            self.fuse(problem, &twists, question);
+        }
+        // Each is proved up to the tolerance on balance; where they cross by
+        // that, the truth lies between them.
+        if self.lower > self.upper {
+            std::mem::swap(&mut self.lower, &mut self.upper);
+        }
+    }
+
+    /// Bounds from an iterate.
+    pub(super) fn prove(&mut self, problem: &Problem<'_>, iterate: &Iterate) {
         let twists = problem.program.twists(&iterate.v);
         if !self.keep_lower(problem, &twists) {
             self.mix(problem, &twists);
@@ -70,14 +84,6 @@ impl Best {
             if self.keep_upper(problem, iterate, share) {
                 break;
             }
-        }
-        if !self.answers(question) && self.upper.is_finite() {
-            self.fuse(problem, &twists, question);
-        }
-        // Each is proved up to the tolerance on balance; where they cross by
-        // that, the truth lies between them.
-        if self.lower > self.upper {
-            std::mem::swap(&mut self.lower, &mut self.upper);
         }
     }
 

@@ -134,6 +134,22 @@ impl Problem<'_> {
     /// centre of mass in W, with the share of each link in the dissipation.
     /// `None` when the field is not admissible or does no positive work.
     pub(super) fn lower_bound(&self, twists: &[Twist]) -> Option<(f64, Vec<f64>)> {
+        let (dissipation, mut shares) = self.dissipation(twists)?;
+        let (power, error) = self.power(self.loads, twists);
+        let power = power - error;
+        if !(power > 0.0 && dissipation > 0.0) {
+            return None;
+        }
+        for share in &mut shares {
+            *share /= dissipation;
+        }
+        Some((power / dissipation, shares))
+    }
+
+    /// Upper bound on the power in W that the connections at their rated strengths dissipate
+    /// in a twist per body of the block, and what each link takes up. `None` when the
+    /// field is not admissible.
+    pub(super) fn dissipation(&self, twists: &[Twist]) -> Option<(f64, Vec<f64>)> {
         let Self { structure, block, program, .. } = self;
         let mut shares = Vec::with_capacity(block.links.len());
         let mut dissipation = 0.0;
@@ -157,21 +173,19 @@ impl Problem<'_> {
             dissipation += share;
             shares.push(share);
         }
+        Some((dissipation * (1.0 + (block.links.len() as f64 + 16.0) * f64::EPSILON), shares))
+    }
+
+    /// Power in W of `loads`, indexed by the structure's bodies, in a twist per body of the
+    /// block, and a bound on its rounding error.
+    pub(super) fn power(&self, loads: &[BodyLoad], twists: &[Twist]) -> (f64, f64) {
         let (mut power, mut size) = (0.0, 0.0);
-        for (twist, &body) in twists.iter().zip(&block.bodies) {
-            let load = &self.loads[body];
+        for (twist, &body) in twists.iter().zip(&self.block.bodies) {
+            let load = &loads[body];
             power += twist.power(&load.wrench);
             size += twist.linear.abs().dot(&load.force_size) + twist.angular.abs().dot(&load.torque_size);
         }
-        power -= size * (block.bodies.len() as f64 + 16.0) * f64::EPSILON;
-        let dissipation = dissipation * (1.0 + (block.links.len() as f64 + 16.0) * f64::EPSILON);
-        if !(power > 0.0 && dissipation > 0.0) {
-            return None;
-        }
-        for share in &mut shares {
-            *share /= dissipation;
-        }
-        Some((power / dissipation, shares))
+        (power, size * (self.block.bodies.len() as f64 + 16.0) * f64::EPSILON)
     }
 
     /// Rounding of a link's relative twist.

@@ -58,6 +58,23 @@ impl BodyLoad {
         }
     }
 
+    /// `factor` times the same load.
+    pub(super) fn times(&self, factor: f64) -> Self {
+        let size = factor.abs();
+        let WrenchError { force, torque } = self.rounding;
+        Self {
+            wrench: self.wrench * factor,
+            force_size: self.force_size * size,
+            torque_size: self.torque_size * size,
+            rest: self.rest * factor,
+            // Each product is rounded once.
+            rounding: WrenchError {
+                force: (force + self.wrench.force.abs() * f64::EPSILON) * size,
+                torque: (torque + self.wrench.torque.abs() * f64::EPSILON) * size,
+            },
+        }
+    }
+
     /// Whether there is nothing to hold.
     pub(super) fn is_zero(&self) -> bool {
         self.wrench == Wrench::ZERO

@@ -169,6 +169,26 @@ impl Program {
         Self { shares, ..Self::unstated(structure, block, loads, FLOOR) }.stated(structure, block)
     }
 
+    /// The program of the largest factor on `loads` that the block stands beside `base` with
+    /// every strength at `limit` times the rated one, measured by `typical` loads.
+    ///
+    /// Divided by the factor, it is one of the least utilisation: with the scaled t for 1 over
+    /// the factor, the block holds `loads` and t times `base` with t times the strengths.
+    pub(super) fn of_factor(
+        structure: &Structure,
+        block: &Block,
+        [base, loads, typical]: [&[BodyLoad]; 3],
+        limit: f64,
+    ) -> Self {
+        let unstated = Self::unstated(structure, block, typical, FLOOR);
+        let (load, preload) = (scaled(block, loads, &unstated.row_factor), scaled(block, base, &unstated.row_factor));
+        let mut program = Self { load, preload, t_scale: limit, ..unstated };
+        for (index, &link) in block.links.iter().enumerate() {
+            program.add_link(structure, index, link);
+        }
+        program
+    }
+
     /// With the variables of every link.
     fn stated(self, structure: &Structure, block: &Block) -> Self {
         let mut program = self;
@@ -187,14 +207,11 @@ impl Program {
         let frames: Vec<LinkFrame> = block.links.iter().map(|&link| LinkFrame::new(structure, link)).collect();
         let scales = Scales::new(structure, block, &frames, loads, floor);
         let mut row_factor = Vec::with_capacity(6 * block.bodies.len());
-        let mut load = Vec::with_capacity(6 * block.bodies.len());
-        for (i, &body) in block.bodies.iter().enumerate() {
-            let (force, torque) = (1.0 / scales.force[i], 1.0 / (scales.force[i] * scales.lever[i]));
+        for (force, lever) in scales.force.iter().zip(&scales.lever) {
+            let (force, torque) = (1.0 / force, 1.0 / (force * lever));
             row_factor.extend([force, force, force, torque, torque, torque]);
-            let wrench = &loads[body].wrench;
-            load.extend(wrench.force.iter().map(|f| f * force));
-            load.extend(wrench.torque.iter().map(|m| m * torque));
         }
+        let load = scaled(block, loads, &row_factor);
         let sides = frames
             .iter()
             .map(|frame| {
@@ -408,6 +425,13 @@ impl Program {
         entries.retain(|entry| entry.1 != 0.0);
         entries
     }
+}
+
+/// The loads of a block's bodies by row, scaled.
+fn scaled(block: &Block, loads: &[BodyLoad], row_factor: &[f64]) -> Vec<f64> {
+    let wrenches = block.bodies.iter().map(|&body| loads[body].wrench);
+    let rows = wrenches.flat_map(|Wrench { force: f, torque: m }| [f.x, f.y, f.z, m.x, m.y, m.z]);
+    rows.zip(row_factor).map(|(load, factor)| load * factor).collect()
 }
 
 /// By how much a force sideways demands more of a connector than one along it, where

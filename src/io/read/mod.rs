@@ -3,6 +3,7 @@
 //! Each reader takes the wire types' values and the places they came from. What
 //! a file means is decided here; how it is written, in [`super::wire`].
 
+mod angle;
 mod catalogue;
 mod certificate;
 mod configuration;
@@ -12,7 +13,11 @@ mod decode;
 mod environment;
 mod faults;
 mod goal;
+mod lattice;
+mod lattice_type;
+mod linkage;
 mod matching;
+mod module_type;
 mod names;
 mod outcome;
 mod plan;
@@ -20,12 +25,16 @@ mod rotation;
 mod sequence;
 mod structure;
 
+pub(super) use rotation::port_rotation;
+
 use super::certificate_document::CertificateDocument;
 use super::diagnostics::Diagnostics;
 use super::document::{Checkable, NamedStructure, Problem, Resolve, SourceFile, Verifiable};
 use super::findings::Findings;
 use super::plan_document::PlanDocument;
+use crate::robot::linkage::Linkage;
 use crate::robot::{Catalogue, Configuration};
+use configuration::{Draft, Robot, read_start};
 
 /// Reads a `structure/1` file.
 ///
@@ -49,7 +58,7 @@ pub fn read_catalogue(file: &SourceFile) -> Result<Catalogue, Diagnostics> {
     findings.finish(value)
 }
 
-/// Reads a `configuration/1` file on its own, as a start.
+/// Reads a `configuration/1` file on its own, as a start; its modules must be lattice modules.
 ///
 /// # Errors
 /// All problems of the file, and of the catalogue that it refers to, at once.
@@ -57,7 +66,20 @@ pub fn read_configuration(file: &SourceFile, resolve: Resolve<'_>) -> Result<Con
     let mut findings = Findings::default();
     let document = findings.open(file);
     let value =
-        document.as_ref().and_then(|document| configuration::read_start(&document.root(), resolve, &mut findings));
+        document.as_ref().and_then(|document| read_start(&document.root(), resolve, &mut findings, lattice::build));
+    findings.finish(value)
+}
+
+/// Reads a `configuration/1` file on its own, as a start, with modules of any kind. Lattice modules
+/// are taken as rigid modules with six ports.
+///
+/// # Errors
+/// All problems of the file, and of the catalogue that it refers to, at once.
+pub fn read_linkage(file: &SourceFile, resolve: Resolve<'_>) -> Result<Linkage, Diagnostics> {
+    let mut findings = Findings::default();
+    let document = findings.open(file);
+    let value =
+        document.as_ref().and_then(|document| read_start(&document.root(), resolve, &mut findings, linkage::build));
     findings.finish(value)
 }
 
@@ -84,7 +106,10 @@ pub fn read_checkable(file: &SourceFile, resolve: Resolve<'_>) -> Result<Checkab
         let root = document.root();
         match decode::format_of(&root, &["structure", "configuration"], &mut findings)? {
             "structure" => structure::read(&root, &mut findings).map(Checkable::Structure),
-            _ => configuration::read_start(&root, resolve, &mut findings).map(Checkable::Configuration),
+            _ => match read_start(&root, resolve, &mut findings, Draft::build)? {
+                Robot::Lattice(configuration) => Some(Checkable::Configuration(configuration)),
+                Robot::Linkage(linkage) => Some(Checkable::Linkage(linkage)),
+            },
         }
     });
     findings.finish(value)

@@ -16,7 +16,9 @@ mod plan;
 mod structure;
 
 pub(super) use action::{Action, Axis, CellTarget};
-pub(super) use catalogue::{BodyType, Catalogue, CatalogueFormat, Faces, ModuleType, Motion, Ports, Shape};
+pub(super) use catalogue::{
+    BodyType, Catalogue, CatalogueFormat, Faces, Joint, ModuleType, Motion, PortType, Ports, Shape,
+};
 pub(super) use certificate::{
     Carried, CarriedPoints, CarriedWrench, Certificate, CertificateFormat, Mechanism, Stress, Twist,
 };
@@ -30,7 +32,7 @@ pub(super) use configuration::{
 };
 pub(super) use connector::Connector;
 pub(super) use errors::{Errors, ErrorsFormat, FileError};
-pub(super) use number::{Bound, Limit, NonNegative, Positive, Real, reals};
+pub(super) use number::{AngleRange, Bound, Limit, NonNegative, Positive, Real, reals};
 pub(super) use outcome::{Impossible, Outcome, StoppedBy, Which};
 pub(super) use plan::{Alternative, Bottleneck, Bracket, Objective, Plan, PlanFormat, Proof, Statistics};
 pub(super) use structure::{Body, Connection, Contact, Load, Structure, StructureFormat};

@@ -1,12 +1,10 @@
 //! A configuration or a goal to `configuration/1`.
 
-use super::super::wire::{self, NonNegative, Positive, Real};
-use super::connector::connectors;
+use super::super::wire::{self, NonNegative, Real};
+use super::catalogue::{referred, shape};
 use super::{vector, xyzw};
-use crate::robot::{
-    Catalogue, Configuration, Environment, FaceConnection, Goal, Module, ModuleType, Orientation, Port, Shape,
-};
-use crate::spatial::{Rotation, Vec3};
+use crate::robot::{Configuration, Environment, FaceConnection, Goal, Module, Orientation, Port};
+use crate::spatial::Rotation;
 
 /// A configuration that stands on its own.
 pub(super) fn start(configuration: &Configuration) -> wire::Configuration {
@@ -18,7 +16,7 @@ pub(super) fn start(configuration: &Configuration) -> wire::Configuration {
         at_m: load.at.map(vector),
     });
     wire::Configuration {
-        catalogue: Some(catalogue(&configuration.catalogue)),
+        catalogue: Some(referred(&configuration.catalogue)),
         gravity_m_s2: Some(vector(configuration.gravity)),
         environment: Some(environment(&configuration.environment)),
         loads: Some(loads.collect()),
@@ -90,44 +88,5 @@ fn environment(environment: &Environment) -> wire::Environment {
             .map(|ground| wire::Ground { height_m: Real(ground.height), friction: NonNegative(ground.friction) }),
         obstacles: obstacles.collect(),
         module_friction: Some(NonNegative(environment.module_friction)),
-    }
-}
-
-fn shape(shape: &Shape) -> wire::Shape {
-    let Shape::Cuboid { half_extents } = shape;
-    wire::Shape::Cuboid { half_extents_m: [half_extents.x, half_extents.y, half_extents.z].map(Positive) }
-}
-
-/// By name if it is built in, in full otherwise, so that the file stands on its own.
-fn catalogue(catalogue: &Catalogue) -> wire::CatalogueRef {
-    if Catalogue::built_in(&catalogue.name).as_ref() == Some(catalogue) {
-        return wire::CatalogueRef::Name(catalogue.name.clone());
-    }
-    let types = catalogue.module_types.iter().map(|t| (t.name.clone(), module_type(catalogue, t)));
-    wire::CatalogueRef::Inline(Box::new(wire::Catalogue {
-        format: wire::CatalogueFormat::V1,
-        name: Some(catalogue.name.clone()),
-        connectors: connectors(&catalogue.connectors),
-        module_types: types.collect(),
-    }))
-}
-
-fn module_type(catalogue: &Catalogue, module_type: &ModuleType) -> wire::ModuleType {
-    let (body, lattice) = (module_type.body(), module_type.cell());
-    let motions = [(lattice.slide, wire::Motion::Slide), (lattice.pivot, wire::Motion::Pivot)];
-    let connector = |index: usize| catalogue.connectors[index].name.clone();
-    wire::ModuleType {
-        pitch_m: Some(Positive(lattice.pitch)),
-        bodies: vec![wire::BodyType {
-            name: body.name.clone(),
-            mass_kg: NonNegative(body.mass),
-            com_m: (body.com != Vec3::zeros()).then(|| vector(body.com)),
-            shape: shape(&body.shape),
-        }],
-        ports: wire::Ports::Faces(wire::Faces::Faces),
-        connector: Some(connector(lattice.face)),
-        hinge: lattice.hinge.map(connector),
-        motions: motions.into_iter().filter(|(can, _)| *can).map(|(_, motion)| motion).collect(),
-        joints: Vec::new(),
     }
 }

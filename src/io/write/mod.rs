@@ -1,5 +1,6 @@
 //! From core types to texts that read back equal.
 
+mod catalogue;
 mod certificate;
 mod check;
 mod configuration;

@@ -9,8 +9,8 @@ use crate::reconfigure::moves::Move;
 use crate::reconfigure::plan::{Objective, Outcome};
 use crate::reconfigure::problem::{Problem, cells};
 use crate::reconfigure::saturated::kept;
-use crate::reconfigure::solve::{MARGIN_TOLERANCE, Options, Reduction};
 use crate::reconfigure::step::Step;
+use crate::reconfigure::{MARGIN_TOLERANCE, Options, Reduction};
 use crate::robot::{Cell, Configuration};
 
 use super::{cubes, goal, moves_of, plan, polycube, solved};

@@ -18,10 +18,11 @@ use crate::spatial::Vec3;
 
 use super::layout::Layout;
 use super::moves::{Ability, Move, fitting};
+use super::options::Options;
 use super::plan::{Outcome, Plan, Report};
 use super::problem::cells;
 use super::replay::replay;
-use super::solve::{Options, solve};
+use super::solve::solve;
 
 /// Everything that a free cube of the catalogue can do.
 pub const CUBE: Ability = Ability { slide: true, pivot: true, hinge: true };

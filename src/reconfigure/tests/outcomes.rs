@@ -3,7 +3,7 @@
 use crate::reconfigure::plan::{Objective, Outcome};
 use crate::reconfigure::refusal::{Impossible, Refusal, Which};
 use crate::reconfigure::replay::{Fault, replay};
-use crate::reconfigure::solve::{Options, Reduction, solve};
+use crate::reconfigure::{Options, Reduction, solve};
 use crate::robot::{Cell, Configuration, Fault as UnsoundFault, Goal, Matching, ModuleLoad, Obstacle, Part, Shape};
 use crate::spatial::{Pose, Vec3};
 

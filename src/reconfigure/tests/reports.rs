@@ -6,8 +6,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use crate::reconfigure::moves::{Motion, Move};
 use crate::reconfigure::plan::{Limit, Objective, Outcome, Plan};
 use crate::reconfigure::replay::replay;
-use crate::reconfigure::solve::{Options, solve};
 use crate::reconfigure::trace::Trace;
+use crate::reconfigure::{Options, solve};
 use crate::robot::{Cell, Face};
 
 use super::{cubes, goal, plan, solved, tower_to_row};

@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use crate::reconfigure::Action;
+use crate::reconfigure::Options;
 use crate::reconfigure::plan::Plan;
 use crate::reconfigure::replay::{Failure, Fault, replay};
-use crate::reconfigure::solve::Options;
 use crate::robot::{Cell, Configuration, Goal};
 
 use super::{cubes, goal, plan, solved, tower_to_row};

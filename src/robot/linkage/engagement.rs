@@ -169,7 +169,7 @@ fn docked(a: &Pose, b: &Pose, tolerance: f64) -> bool {
 
 /// At how many angles, equally spaced over a turn, two ports engage: those at which both do. 1 with a surface,
 /// which has no angle.
-pub(super) fn orientations_between(a: &PortPlace, b: &PortPlace) -> u32 {
+pub fn orientations_between(a: &PortPlace, b: &PortPlace) -> u32 {
     match (a, b) {
         (PortPlace::Point { orientations: m, .. }, PortPlace::Point { orientations: n, .. }) => common(*m, *n),
         _ => 1,
@@ -179,6 +179,21 @@ pub(super) fn orientations_between(a: &PortPlace, b: &PortPlace) -> u32 {
 /// The greatest common divisor; 1 if both are 0.
 fn common(m: u32, n: u32) -> u32 {
     if n == 0 { m.max(1) } else { common(n, m % n) }
+}
+
+/// Frame in W of the connection of two ports, each of a module type and on a body with this pose in W: z from the
+/// first one's body to the second's, x that of the port at a point (of two the first one's). `None` for two
+/// surfaces. Whether they meet is not asked.
+pub fn frame_between([first, second]: [(&ModuleType, usize, Pose); 2]) -> Option<Pose> {
+    let place = |(module_type, port, _): &(&ModuleType, usize, Pose)| match &module_type.ports[*port].place {
+        PortPlace::Point { frame, .. } => Some(*frame),
+        PortPlace::Surface => None,
+    };
+    match (place(&first), place(&second)) {
+        (Some(frame), _) => Some(first.2 * frame),
+        (None, Some(frame)) => Some(mated(&(second.2 * frame), 0.0)),
+        (None, None) => None,
+    }
 }
 
 /// Whether two ports that look at each other are turned by a multiple of a turn over `orientations`.

@@ -23,7 +23,7 @@ use super::configuration::{Environment, Matching, ModuleLoad, Requirement};
 use super::module_type::ModuleType;
 
 pub use code::Code;
-pub use engagement::{Engagement, MEETING};
+pub use engagement::{Engagement, MEETING, frame_between, orientations_between};
 pub use kinematics::{child_pose, mated};
 pub use spot::{MICRO, Spot};
 

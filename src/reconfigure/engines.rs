@@ -1,0 +1,196 @@
+//! What is asked of the search engines, and what a report makes of their answers: the same for every
+//! family of robots.
+//!
+//! Knows objectives, budgets and proofs; does not know what a state or an action is.
+
+use std::hash::Hash;
+use std::time::Instant;
+
+use planners::{Budget, Limit, PathOf, Progress, Search, Space};
+
+use super::options::{Event, Options};
+use super::plan::{Objective, Outcome, Plan, Proof, Report, Statistics};
+use super::refusal::Impossible;
+
+/// Two margins this close, relative to the larger of 1 and the margin, are
+/// equally good: what the oracle's brackets are guaranteed to resolve.
+pub const MARGIN_TOLERANCE: f64 = 1e-6;
+
+/// How paths of a space become plans of a robot.
+pub trait Translation<S: Space> {
+    /// What the plans do.
+    type Action;
+    /// What names a connection of the robot.
+    type Connection;
+    /// What plans that differ in no more than the order of independent moves have in common.
+    type Key: Hash + Eq;
+
+    /// The key of a path from the start, by its actions.
+    fn key(&self, path: &[S::Action]) -> Self::Key;
+
+    /// The plan that follows a path from the start, by its actions.
+    fn plan(&self, path: &[S::Action]) -> Plan<Self::Action, Self::Connection>;
+}
+
+/// The plans that a translation makes.
+pub type ReportOf<T, S> = Report<<T as Translation<S>>::Action, <T as Translation<S>>::Connection>;
+
+/// One search.
+pub struct Task<'a> {
+    /// What is wanted.
+    pub options: &'a Options,
+    /// Margin that every transient state must have; `None` where plans are made by geometry alone.
+    pub required: Option<f64>,
+    /// When planning began.
+    pub began: Instant,
+    /// How many structures the oracle has assessed.
+    pub solves: &'a dyn Fn() -> u64,
+}
+
+impl Task<'_> {
+    /// Searches a space by best-first search alone.
+    pub fn run<S: Space, T: Translation<S>>(
+        &self,
+        space: &S,
+        translation: &T,
+        on_event: &mut dyn FnMut(&Event),
+    ) -> ReportOf<T, S> {
+        self.run_with(space, translation, |search, floor| search.shortest(floor), on_event)
+    }
+
+    /// Searches a space whose shortest paths are found by `shortest`, given the least width.
+    pub fn run_with<S: Space, T: Translation<S>>(
+        &self,
+        space: &S,
+        translation: &T,
+        shortest: impl Fn(&mut Search<'_, S>, f64) -> planners::Outcome<PathOf<S>>,
+        on_event: &mut dyn FnMut(&Event),
+    ) -> ReportOf<T, S> {
+        let floor = self.required.unwrap_or(f64::NEG_INFINITY);
+        let mut on_progress =
+            |progress: &Progress| on_event(&Event { progress: *progress, oracle_solves: (self.solves)() });
+        let mut search = Search::new(space, self.search_options()).on_progress(&mut on_progress);
+        let outcome = match self.options.objective {
+            Objective::Margin => best_margin(&mut search, &shortest, floor),
+            Objective::Moves => shortest(&mut search, floor),
+        };
+        let mut found: Vec<Vec<S::Action>> = outcome.best().map(actions::<S>).into_iter().collect();
+        let mut cut_by = outcome.limit();
+        if let planners::Outcome::Solved { found: best, .. } = &outcome
+            && self.options.plans > 1
+        {
+            let as_good = match self.options.objective {
+                Objective::Margin => search.tie(best.width.lower).max(floor),
+                Objective::Moves => floor,
+            };
+            let key = |path: &[S::Action]| translation.key(path);
+            let further = search.k_best(self.options.plans, as_good, key);
+            further_plans(&mut found, further.best().into_iter().flatten().map(actions::<S>), key);
+            found.truncate(self.options.plans);
+            cut_by = further.limit();
+        }
+        let wants_more = self.options.plans > 1 && found.len() < self.options.plans;
+        let statistics = search.statistics();
+        drop(search);
+        let mut plans = found.iter().map(|path| translation.plan(path));
+        let plan = plans.next();
+        let (ending, proof) = self.conclude(&outcome, plan.is_some());
+        Report {
+            outcome: ending,
+            objective: self.options.objective,
+            required: self.required,
+            plan,
+            alternatives: plans.collect(),
+            alternatives_cut_by: cut_by.filter(|_| wants_more),
+            proof,
+            statistics: Statistics {
+                expanded: statistics.expanded,
+                states: statistics.states as u64,
+                generated: statistics.generated,
+                certified: statistics.certified,
+                bytes: statistics.bytes as u64,
+                ..Statistics::default()
+            },
+        }
+    }
+
+    fn search_options(&self) -> planners::Options {
+        let budget = Budget {
+            deadline: self.options.time_limit.and_then(|limit| self.began.checked_add(limit)),
+            max_expansions: self.options.max_expansions,
+            max_bytes: self.options.max_bytes,
+            cancel: self.options.cancel.clone(),
+        };
+        planners::Options { tolerance: MARGIN_TOLERANCE, budget, ..planners::Options::default() }
+    }
+
+    fn conclude<P, C>(&self, outcome: &planners::Outcome<P>, has_plan: bool) -> (Outcome<C>, Proof) {
+        let optimal = |proof: &planners::Proof| match self.options.objective {
+            Objective::Margin => proof.cost_optimal && (proof.width_optimal || self.required.is_none()),
+            Objective::Moves => proof.cost_optimal,
+        };
+        let ending = match outcome {
+            planners::Outcome::Solved { .. } => Outcome::Solved,
+            planners::Outcome::Impossible => {
+                let required = self.required.unwrap_or(f64::NEG_INFINITY);
+                Outcome::Impossible(Impossible::Exhausted { required })
+            }
+            planners::Outcome::OutOfBudget { limit, .. } => Outcome::OutOfBudget(*limit),
+        };
+        let proof = outcome.proof().map_or(Proof::NOTHING_TO_FIND, |proof| Proof {
+            optimal: has_plan && optimal(proof),
+            margin_at_most: proof.width_at_most,
+            moves_at_least: proof.cost_at_least,
+        });
+        (ending, proof)
+    }
+}
+
+/// What a path does.
+fn actions<S: Space>(path: &PathOf<S>) -> Vec<S::Action> {
+    path.steps.iter().map(|step| step.action.clone()).collect()
+}
+
+/// The cheapest of the widest paths, with a path in hand early.
+///
+/// A search for the fewest moves is guided by the bound on the moves that are left, one for the
+/// largest margin is not. So a path of fewest moves comes first, and then the
+/// question is only whether a path is wider *by more than the tolerance*, which far
+/// fewer transitions are open to. If none is, the first path is also the
+/// cheapest of the widest: no path that the floor admits is cheaper.
+fn best_margin<S: Space>(
+    search: &mut Search<'_, S>,
+    shortest: impl Fn(&mut Search<'_, S>, f64) -> planners::Outcome<PathOf<S>>,
+    floor: f64,
+) -> planners::Outcome<PathOf<S>> {
+    let cheapest = shortest(search, floor);
+    let planners::Outcome::Solved { found, proof } = cheapest else { return cheapest };
+    let width = found.width.lower;
+    if width >= search.tie(proof.width_at_most) {
+        let proof = planners::Proof { width_optimal: true, ..proof };
+        return planners::Outcome::Solved { found, proof };
+    }
+    let wider = width + MARGIN_TOLERANCE * width.abs().max(1.0);
+    match search.margin(wider) {
+        planners::Outcome::Impossible => {
+            let proof = planners::Proof { width_at_most: wider, width_optimal: true, ..proof };
+            planners::Outcome::Solved { found, proof }
+        }
+        // Brackets straddle the edge of the tolerance: the engine's own passes tell what they allow.
+        planners::Outcome::OutOfBudget { limit: Limit::Precision, .. } => search.margin(floor),
+        planners::Outcome::OutOfBudget { limit, best: None, proof } => {
+            let proof = planners::Proof { width_optimal: false, cost_optimal: false, ..proof };
+            planners::Outcome::OutOfBudget { limit, best: Some(found), proof }
+        }
+        better => better,
+    }
+}
+
+/// Adds the paths that are not among those found by their key.
+fn further_plans<A, K: Eq>(found: &mut Vec<Vec<A>>, further: impl Iterator<Item = Vec<A>>, key: impl Fn(&[A]) -> K) {
+    for path in further {
+        if found.iter().all(|known| key(known) != key(&path)) {
+            found.push(path);
+        }
+    }
+}
