@@ -1,24 +1,12 @@
 //! The text format: `C`, `M id alpha beta gamma`, `E id side dock orientation dock side id`.
-//!
-//! In it the names `+X`, `-X`, `-Z` of docks stand for the numbers 0, 1, 2, and these for the components
-//! `-X`, `+X`, `-Z` of a shoe: the names of X docks are swapped against those of the other formats. That is what the
-//! platform's own parser does, and files rely on it.
 
 use std::collections::HashMap;
 
-use super::super::codes;
-use super::super::findings::{Document, Findings, Place};
-use super::super::json::{Span, clipped};
-use super::world::{Joint, Joints, Kind, Mark, Module, QUARTERS, World};
-
-/// Names of docks in the order of their numbers in this format.
-pub(super) const DOCK_NAMES: [&str; 3] = ["+X", "-X", "-Z"];
-
-/// Names of a module's halves, in the order of their numbers.
-pub(super) const SIDES: [&str; 2] = ["A", "B"];
-
-/// Names of orientations, in the order of their numbers.
-pub(super) const ORIENTATIONS: [&str; 4] = ["N", "E", "S", "W"];
+use super::super::super::codes;
+use super::super::super::findings::{Document, Findings, Place};
+use super::super::super::json::{Span, clipped};
+use super::super::super::rofi::{QUARTERS, text::{DOCKS, ORIENTATIONS, SIDES}};
+use super::world::{Joint, Joints, Kind, Mark, Module, World};
 
 /// A word of a line and where it stands.
 #[derive(Clone, Copy)]
@@ -165,9 +153,9 @@ impl<'a> Reader<'a, '_> {
         }
         let modules = [words[1], words[7]].map(|word| self.known(word));
         let sides = [words[2], words[6]].map(|word| self.choice(word, "a side", &SIDES));
-        let docks = [words[3], words[5]].map(|word| self.choice(word, "a dock", &DOCK_NAMES));
+        let docks = [words[3], words[5]].map(|word| self.choice(word, "a dock", &DOCKS));
         let orientation = self.choice(words[4], "an orientation", &ORIENTATIONS);
-        let end = |i: usize| Some((modules[i]?, sides[i]? * DOCK_NAMES.len() + docks[i]?));
+        let end = |i: usize| Some((modules[i]?, sides[i]? * DOCKS.len() + docks[i]?));
         let mark = self.mark(Span { start: words[0].span.start, end: words[7].span.end });
         Some(Joint { ends: [end(0)?, end(1)?], quarters: QUARTERS[orientation?], mark })
     }

@@ -4,12 +4,12 @@ use std::collections::HashMap;
 
 use nalgebra::{Matrix3, Rotation3};
 
-use super::super::codes;
-use super::super::findings::{Findings, Place};
-use super::super::json::clipped;
-use super::super::read::decode::decode;
-use super::super::{suggest, wire};
-use super::world::{Anchor, COMPONENTS, DOCKS, Joint, Joints, Kind, Mark, Module, ORIENTATIONS, QUARTERS, World};
+use super::super::super::findings::{Findings, Place};
+use super::super::super::json::clipped;
+use super::super::super::rofi::{COMPONENTS, DOCKS, ORIENTATIONS, QUARTERS};
+use super::super::super::{codes, suggest, wire};
+use super::super::decode::decode;
+use super::world::{Anchor, Joint, Joints, Kind, Mark, Module, World};
 use crate::spatial::{Pose, Rotation, Vec3};
 
 /// Largest error of a rotation matrix's products that passes as the rounding of decimal input.

@@ -1,13 +1,14 @@
 //! What the platform's files say, in its own terms: before frames and catalogues.
 
-use super::super::codes::Code;
-use super::super::findings::{Findings, Place};
-use super::super::json::Span;
+use super::super::super::codes::Code;
+use super::super::super::findings::{Findings, Place};
+use super::super::super::json::Span;
+use super::super::super::rofi::DOCKS;
 use crate::spatial::Pose;
 
 /// A place in a file that problems are shown at.
 #[derive(Clone, Debug)]
-pub(in crate::io) struct Mark<'a> {
+pub(in super::super) struct Mark<'a> {
     place: Place<'a>,
     span: Span,
 }
@@ -33,7 +34,7 @@ impl<'a> From<Place<'a>> for Mark<'a> {
 
 /// Modules, how they are joined, and where they are.
 #[derive(Clone, Debug)]
-pub(in crate::io) struct World<'a> {
+pub(in super::super) struct World<'a> {
     pub(super) modules: Vec<Module<'a>>,
     pub(super) joints: Joints<'a>,
     /// Where components are. Without any, the first module's shoe A is the origin.
@@ -88,20 +89,6 @@ pub(super) struct Anchor<'a> {
     pub(super) pose: Pose,
     pub(super) mark: Mark<'a>,
 }
-
-/// The docks of a universal module, in the order of their numbers.
-pub(super) const DOCKS: [&str; 6] = ["A-X", "A+X", "A-Z", "B-X", "B+X", "B-Z"];
-
-/// How many components a universal module has.
-pub(super) const COMPONENTS: usize = 10;
-
-/// Names of the orientations at which docks are joined, in the order of their numbers.
-pub(super) const ORIENTATIONS: [&str; 4] = ["North", "East", "South", "West"];
-
-/// The quarter turns between two ports that an orientation stands for, by its number. The platform turns
-/// the second dock by 180, -90, 0 and 90 degrees about the axis from the first one's face backwards, after
-/// half a turn: 180 degrees less that, between the ports.
-pub(super) const QUARTERS: [u8; 4] = [0, 3, 2, 1];
 
 impl Kind<'_> {
     /// How many docks it has.

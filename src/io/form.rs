@@ -1,21 +1,5 @@
-//! The files of the RoFI platform (github.com/paradise-fi/RoFI): JSON worlds, text, and voxels.
-//!
-//! Each is parsed into one [`World`], which says in the platform's terms what there is, and then built
-//! into a [`Linkage`](crate::robot::linkage::Linkage) of the catalogue `rofi`; and back. Lengths in these files are in cells.
-//! Knows nothing of gravity or surroundings, which no such file can express.
+//! What a file is, by its content.
 
-mod build;
-mod json;
-mod text;
-mod voxels;
-mod world;
-mod write;
-
-pub(super) use build::{Needs, build, needs};
-pub(super) use world::World;
-pub(super) use write::{Reasons, write};
-
-use super::findings::{Document, Findings};
 use super::json::{Node, Value};
 
 /// What a file is, by its content.
@@ -66,12 +50,3 @@ impl Form {
     }
 }
 
-/// The world that a document of one of the platform's formats describes; `None` after a problem, or for another format.
-pub(super) fn parse<'a>(document: &'a Document<'a>, findings: &mut Findings) -> Option<World<'a>> {
-    match document.form {
-        Form::Own => None,
-        Form::RofiWorld => json::parse(&document.root(), findings),
-        Form::RofiText => text::parse(document, findings),
-        Form::RofiVoxels => voxels::parse(&document.root(), findings),
-    }
-}

@@ -9,10 +9,9 @@ use std::collections::HashMap;
 
 use nalgebra::{Matrix3, Rotation3};
 
-use super::super::codes;
-use super::super::findings::{Findings, Place};
-use super::super::read::decode::decode;
-use super::super::wire;
+use super::super::super::findings::{Findings, Place};
+use super::super::super::{codes, wire};
+use super::super::decode::decode;
 use super::world::{Anchor, Joints, Kind, Mark, Module, World};
 use crate::spatial::{Pose, Rotation, Vec3};
 
