@@ -67,6 +67,26 @@ impl Findings {
         Some(Document { name, text, root: root? })
     }
 
+    /// Adds a problem of a text that is no JSON, at a place in it.
+    pub(super) fn add_in_text(
+        &mut self,
+        file: &SourceFile,
+        text: &str,
+        span: Span,
+        code: Code,
+        message: String,
+        hint: &str,
+    ) {
+        self.files.push(file.name.clone());
+        self.push(&file.name, text, span, code, String::new(), message, Some(hint.to_string()));
+    }
+
+    /// Adds a problem of a file as a whole.
+    pub(super) fn add_in_file(&mut self, file: &SourceFile, code: Code, message: String, hint: &str) {
+        self.files.push(file.name.clone());
+        self.whole(&file.name, code, message, hint);
+    }
+
     /// Adds a problem of a file as a whole.
     fn whole(&mut self, name: &str, code: Code, message: String, hint: &str) {
         self.push(name, "", Span::new(0, 0), code, String::new(), message, Some(hint.to_string()));

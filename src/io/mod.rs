@@ -31,8 +31,9 @@ pub use certificate_document::CertificateDocument;
 pub use codes::{CODES, Code};
 pub use diagnostics::{Diagnostic, Diagnostics};
 pub use document::{
-    Checkable, LARGEST_FILE, LatticeProblem, LinkageProblem, NamedStructure, Problem, Resolve,
-    SourceFile, Verifiable, no_references,};
+    Checkable, LARGEST_FILE, LatticeProblem, LinkageProblem, NamedStructure, Problem, Resolve, SourceFile, Verifiable,
+    no_references,
+};
 pub use plan_document::{Contradiction, PlanDocument};
 pub use read::{
     read_catalogue, read_certificate, read_checkable, read_configuration, read_linkage, read_plan, read_problem,
@@ -41,5 +42,6 @@ pub use read::{
 pub use schema::{schema, schema_names};
 pub use turn::AxisAngle;
 pub use write::{
-    Unwritable, in_space_because, write_certificate, write_check, write_configuration, write_plan, write_structure,
+    Unwritable, in_space_because, write_catalogue, write_certificate, write_check, write_configuration, write_linkage,
+    write_plan, write_structure,
 };

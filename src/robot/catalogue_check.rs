@@ -34,12 +34,9 @@ impl Catalogue {
         }
         findings.positive(part, "pitch", &[lattice.pitch]);
         let off = |h: &f64| (2.0 * h - lattice.pitch).abs() > SAME_LENGTH * lattice.pitch;
-        let is_cell = body.shape.cuboid().is_some_and(|half_extents| {
-            let positive = lattice.pitch > 0.0 && half_extents.iter().all(|h| *h > 0.0);
-            !(positive && half_extents.iter().any(off))
-        });
-        if !is_cell {
-            findings.add(part, "half_extents", Fault::NotACell);
+        let is_cell = body.shape.cuboid().is_some_and(|half_extents| !half_extents.iter().any(|h| *h > 0.0 && off(h)));
+        if lattice.pitch > 0.0 && !is_cell {
+            findings.add(part, "shape", Fault::NotACell);
         }
         if findings.in_range(part, "face", lattice.face, self.connectors.len())
             && !is_symmetric(&self.connectors[lattice.face].model)

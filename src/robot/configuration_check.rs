@@ -3,9 +3,11 @@
 
 use std::collections::HashMap;
 
-use super::configuration::{Configuration, Environment, FaceConnection, ModuleLoad, Port};
+use super::configuration::{Configuration, FaceConnection, ModuleLoad, Port};
+use super::environment::Environment;
 use super::lattice::neighbour;
 use super::problem::{Fault, Findings, Part, Problem};
+use super::terrain::Terrain;
 
 impl Configuration {
     /// Everything that is wrong with the configuration, not counting its
@@ -103,7 +105,9 @@ impl Environment {
         }
         for (i, obstacle) in self.obstacles.iter().enumerate() {
             let part = Part::Obstacle(i);
-            obstacle.shape.check(findings, part);
+            if let Terrain::Solid(shape) = &obstacle.shape {
+                shape.check(findings, part);
+            }
             findings.finite(part, "position", obstacle.pose.translation.vector.as_slice());
             findings.finite(part, "rotation", obstacle.pose.rotation.coords.as_slice());
             findings.not_negative(part, "friction", &[obstacle.friction]);

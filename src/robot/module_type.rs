@@ -82,7 +82,8 @@ pub enum PortPlace {
         /// Pose of the port's frame in the body frame: z outwards, x the direction that
         /// angles of engagement are counted from.
         frame: Pose,
-        /// At how many angles, equally spaced over a turn, it engages with another port at a point.
+        /// At how many angles, equally spaced over a turn, it engages with another port at a point; 0 for
+        /// one that engages with surfaces only.
         orientations: u32,
     },
     /// Anywhere on the body's surface, which is a ball.

@@ -118,7 +118,7 @@ fn problems_after(change: impl FnOnce(&mut Configuration)) -> Vec<Problem> {
     let mut configuration = robot(&SQUARE);
     configuration.environment.ground = Some(Ground { height: 0.0, friction: 0.5 });
     configuration.environment.obstacles = vec![Obstacle {
-        shape: Shape::Cuboid { half_extents: Vec3::repeat(0.1) },
+        shape: Shape::Cuboid { half_extents: Vec3::repeat(0.1) }.into(),
         pose: Pose::translation(1.0, 0.0, 0.1),
         friction: 0.5,
     }];
@@ -148,8 +148,10 @@ fn every_fault_of_a_configuration_is_found_where_it_is() {
             one(Part::Ground, "friction", Fault::Negative),
         ),
         (
-            Box::new(|c| c.environment.obstacles[0].shape = Shape::Cuboid { half_extents: Vec3::new(1.0, 0.0, 1.0) }),
-            one(Part::Obstacle(0), "half_extents", Fault::NotPositive),
+            Box::new(|c| {
+                c.environment.obstacles[0].shape = Shape::Cuboid { half_extents: Vec3::new(1.0, 0.0, 1.0) }.into()
+            }),
+            one(Part::Obstacle(0), "shape", Fault::NotPositive),
         ),
         (
             Box::new(|c| c.environment.obstacles[0].pose.translation.vector.y = f64::NAN),
@@ -285,7 +287,7 @@ fn every_fault_of_a_catalogue_is_found_where_it_is() {
         (
             Box::new(|c| c.module_types[0].lattice.as_mut().expect("a cube").pitch = 0.06),
             Part::ModuleType(0),
-            "half_extents",
+            "shape",
             Fault::NotACell,
         ),
         (

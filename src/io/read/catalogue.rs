@@ -13,6 +13,7 @@ use super::faults;
 use super::lattice_type::lattice_type;
 use super::module_type::module_type;
 use super::names::Names;
+use super::terrain;
 use crate::robot::{BUILT_IN, Catalogue, Shape};
 use crate::spatial::Vec3;
 
@@ -86,16 +87,16 @@ fn convert(wire: &wire::Catalogue, place: &Place<'_>, source: &str, findings: &m
     problems.is_empty().then_some(catalogue)
 }
 
-/// The shape, if this version knows how to collide it.
+/// The shape of a body.
 pub(super) fn shape(wire: &wire::Shape, place: &Place<'_>, findings: &mut Findings) -> Option<Shape> {
     match wire {
         wire::Shape::Cuboid { half_extents_m } => {
             Some(Shape::Cuboid { half_extents: Vec3::from(half_extents_m.map(|half| half.0)) })
         }
-        wire::Shape::Cylinder { .. } | wire::Shape::Ball { .. } => {
-            let hint = "use a \"cuboid\"".to_string();
-            findings.add(place, codes::UNSUPPORTED, "only cuboids are planned with in this version", hint);
-            None
+        wire::Shape::Cylinder { radius_m, height_m } => {
+            Some(Shape::Cylinder { radius: radius_m.0, height: height_m.0 })
         }
+        wire::Shape::Ball { radius_m } => Some(Shape::Ball { radius: radius_m.0 }),
+        wire::Shape::Convex { points_m } => terrain::hull(points_m, &place.key("convex").key("points_m"), findings),
     }
 }

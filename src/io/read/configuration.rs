@@ -78,7 +78,7 @@ pub(super) fn read_start<T>(
     }
     let catalogue =
         wire.catalogue.as_ref().and_then(|c| catalogue::referred(c, &place.key("catalogue"), resolve, findings));
-    let environment = environment::environment(wire.environment.as_ref(), &place.key("environment"), findings);
+    let environment = environment::environment(wire.environment.as_ref(), &place.key("environment"), resolve, findings);
     let names = module_names(&wire, place, findings);
     let loads = wire.loads.as_deref().unwrap_or_default();
     let surroundings = Surroundings {

@@ -36,7 +36,12 @@ pub(super) fn listed(
 fn check_roll(wire: &wire::RolledConnection, place: &Place<'_>, findings: &mut Findings) {
     for (key, present) in [("direction", wire.direction.is_some()), ("spin_deg", wire.spin_deg.is_some())] {
         if present {
-            refuse(&place.key(key), "faces engage nowhere else", "it is for ports on a surface: leave it out", findings);
+            refuse(
+                &place.key(key),
+                "faces engage nowhere else",
+                "it is for ports on a surface: leave it out",
+                findings,
+            );
         }
     }
     if let Some(roll) = wire.roll_deg.filter(|roll| roll.0 % 90.0 != 0.0) {

@@ -34,6 +34,11 @@ pub(super) fn of_robot(problems: &[Problem], ids: &[&str], place: &Place<'_>, fi
     }
 }
 
+/// Reports one fault of what is at `place`, of a robot with modules of these ids.
+pub(super) fn of_place(fault: Fault, ids: &[&str], place: &Place<'_>, findings: &mut Findings) {
+    report(&Problem::new(Part::Configuration, "", fault), place, ids, findings);
+}
+
 /// The key that holds a field of the core's.
 fn field<'a>(part: &Place<'a>, name: &str) -> Place<'a> {
     let keys: &[&str] = match name {
@@ -45,11 +50,17 @@ fn field<'a>(part: &Place<'a>, name: &str) -> Place<'a> {
         "surface" => &["surface"],
         "range" => &["range_deg"],
         "joints" => &["joints"],
-        "half_extents" => return part.key("bodies").index(0).key("shape").key("cuboid").key("half_extents_m"),
+        "shape" if part.key("bodies").node().is_some() => return measures(&part.key("bodies").index(0).key("shape")),
         "com" => return part.key("bodies").index(0).key("com_m"),
         _ => &[],
     };
     keys.iter().fold(part.clone(), |place, key| place.key(key))
+}
+
+/// Where the measures of a shape are.
+fn measures<'a>(shape: &Place<'a>) -> Place<'a> {
+    let cuboid = shape.key("cuboid");
+    if cuboid.node().is_some() { cuboid.key("half_extents_m") } else { shape.clone() }
 }
 
 fn report(problem: &Problem, place: &Place<'_>, ids: &[&str], findings: &mut Findings) {

@@ -34,7 +34,7 @@ pub(super) fn build(draft: Draft<'_>, findings: &mut Findings) -> Option<Configu
         return None;
     }
     let modules = modules.into_iter().flatten().collect();
-        let mut configuration = Configuration { catalogue, gravity, environment, modules, connections, loads, require };
+    let mut configuration = Configuration { catalogue, gravity, environment, modules, connections, loads, require };
     let typed = configuration.modules.iter().all(|module| module.module_type != UNKNOWN);
     if typed && matches!(wire.connections, wire::Connections::Touching(_)) {
         configuration.connections = configuration.touching_connections();

@@ -21,9 +21,12 @@ mod module_type;
 mod names;
 mod outcome;
 mod plan;
+mod robots;
 mod rotation;
 mod sequence;
+mod stl_and_obj;
 mod structure;
+mod terrain;
 
 pub(super) use rotation::port_rotation;
 
@@ -34,7 +37,7 @@ use super::findings::Findings;
 use super::plan_document::PlanDocument;
 use crate::robot::linkage::Linkage;
 use crate::robot::{Catalogue, Configuration};
-use configuration::{Draft, Robot, read_start};
+use configuration::{Robot, read_start};
 
 /// Reads a `structure/1` file.
 ///
@@ -106,7 +109,7 @@ pub fn read_checkable(file: &SourceFile, resolve: Resolve<'_>) -> Result<Checkab
         let root = document.root();
         match decode::format_of(&root, &["structure", "configuration"], &mut findings)? {
             "structure" => structure::read(&root, &mut findings).map(Checkable::Structure),
-            _ => match read_start(&root, resolve, &mut findings, Draft::build)? {
+            _ => match read_start(&root, resolve, &mut findings, |draft, findings| draft.build(findings))? {
                 Robot::Lattice(configuration) => Some(Checkable::Configuration(configuration)),
                 Robot::Linkage(linkage) => Some(Checkable::Linkage(linkage)),
             },

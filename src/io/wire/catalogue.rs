@@ -82,7 +82,7 @@ pub(crate) struct BodyType {
     pub(crate) shape_rotation_xyzw: Option<[Real; 4]>,
 }
 
-/// A convex solid, centred on its own frame.
+/// A convex solid; all but a hull are centred on their own frame.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase", deny_unknown_fields)]
 pub(crate) enum Shape {
@@ -102,6 +102,12 @@ pub(crate) enum Shape {
     Ball {
         /// Radius.
         radius_m: Positive,
+    },
+    /// The convex hull of points.
+    Convex {
+        /// At least four points that do not lie in a plane, in the frame of the shape.
+        #[schemars(length(min = 4, max = 256))]
+        points_m: Vec<[Real; 3]>,
     },
 }
 
@@ -146,9 +152,10 @@ pub(crate) struct PortType {
     /// the one and its x axis to the other.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) rotation_xyzw: Option<[Real; 4]>,
-    /// At how many angles, equally spaced over a turn, it engages with another port at a point; by default 4.
+    /// At how many angles, equally spaced over a turn, it engages with another port at a point; by default 4,
+    /// 0 for one that engages with surfaces only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 1, max = 3600))]
+    #[schemars(range(min = 0, max = 3600))]
     pub(crate) orientations: Option<u32>,
     /// Name of the connector; none for a port that only connectors of others hold on to.
     #[serde(default, skip_serializing_if = "Option::is_none")]

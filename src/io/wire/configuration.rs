@@ -4,8 +4,9 @@ use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::catalogue::{Catalogue, Shape};
+use super::catalogue::Catalogue;
 use super::number::{NonNegative, Real};
+use super::terrain::Terrain;
 
 /// Name and version of the format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -65,7 +66,7 @@ pub(crate) struct Environment {
     /// Horizontal ground, by default none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) ground: Option<Ground>,
-    /// Immovable solids.
+    /// What else stands there.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) obstacles: Vec<Obstacle>,
     /// Friction coefficient between modules that touch without being connected, by default 0.4.
@@ -83,13 +84,13 @@ pub(crate) struct Ground {
     pub(crate) friction: NonNegative,
 }
 
-/// An immovable solid.
+/// Something immovable.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Obstacle {
     /// Its shape.
-    pub(crate) shape: Shape,
-    /// Its centre.
+    pub(crate) shape: Terrain,
+    /// Origin of its frame; the centre of a cuboid, a cylinder or a ball.
     pub(crate) position_m: [Real; 3],
     /// Its orientation, a unit quaternion, by default along the world's axes.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -14,6 +14,7 @@ mod number;
 mod outcome;
 mod plan;
 mod structure;
+mod terrain;
 
 pub(super) use action::{Action, Axis, CellTarget};
 pub(super) use catalogue::{
@@ -36,3 +37,4 @@ pub(super) use number::{AngleRange, Bound, Limit, NonNegative, Positive, Real, r
 pub(super) use outcome::{Impossible, Outcome, StoppedBy, Which};
 pub(super) use plan::{Alternative, Bottleneck, Bracket, Objective, Plan, PlanFormat, Proof, Statistics};
 pub(super) use structure::{Body, Connection, Contact, Load, Structure, StructureFormat};
+pub(super) use terrain::{Mesh, Terrain};

@@ -112,7 +112,17 @@ fn tidy(component: f64) -> f64 {
     if (component - whole).abs() <= 4.0 * f64::EPSILON { whole } else { component }
 }
 
-pub(super) fn shape(shape: &Shape) -> wire::Shape {
-    let Shape::Cuboid { half_extents } = shape;
-    wire::Shape::Cuboid { half_extents_m: [half_extents.x, half_extents.y, half_extents.z].map(Positive) }
+fn shape(shape: &Shape) -> wire::Shape {
+    match shape {
+        Shape::Cuboid { half_extents } => wire::Shape::Cuboid { half_extents_m: positive(half_extents) },
+        Shape::Cylinder { radius, height } => {
+            wire::Shape::Cylinder { radius_m: Positive(*radius), height_m: Positive(*height) }
+        }
+        Shape::Ball { radius } => wire::Shape::Ball { radius_m: Positive(*radius) },
+        Shape::Convex(hull) => wire::Shape::Convex { points_m: hull.points().iter().copied().map(vector).collect() },
+    }
+}
+
+pub(super) fn positive(v: &Vec3) -> [Positive; 3] {
+    [v.x, v.y, v.z].map(Positive)
 }

@@ -6,6 +6,7 @@ mod check;
 mod configuration;
 mod connector;
 mod errors;
+mod linkage;
 mod outcome;
 mod plan;
 mod sequence;
@@ -23,7 +24,8 @@ use super::diagnostics::Diagnostics;
 use super::document::NamedStructure;
 use super::plan_document::PlanDocument;
 use super::{layout, wire};
-use crate::robot::Configuration;
+use crate::robot::linkage::Linkage;
+use crate::robot::{Catalogue, Configuration};
 use crate::spatial::{Rotation, Vec3};
 use crate::statics::{Assessment, Bracket, Explanation};
 
@@ -62,6 +64,24 @@ pub fn write_structure(structure: &NamedStructure) -> Result<String, Unwritable>
 /// A number that is not finite, other than an unlimited limit of a box.
 pub fn write_configuration(configuration: &Configuration) -> Result<String, Unwritable> {
     text(&configuration::start(configuration))
+}
+
+/// Writes a `configuration/1` file of a linkage that reads back equal, bit for bit, with
+/// [`read_linkage`](super::read_linkage): every module with its pose and its joints. A catalogue that is not
+/// built in is written into it.
+///
+/// # Errors
+/// A number that is not finite, other than an unlimited limit of a box.
+pub fn write_linkage(linkage: &Linkage) -> Result<String, Unwritable> {
+    text(&linkage::start(linkage))
+}
+
+/// Writes a `catalogue/1` file that reads back equal, bit for bit.
+///
+/// # Errors
+/// A number that is not finite, other than an unlimited limit of a box.
+pub fn write_catalogue(catalogue: &Catalogue) -> Result<String, Unwritable> {
+    text(&catalogue::wire(catalogue))
 }
 
 /// Writes a `plan/1` file that stands on its own. An end of a margin where

@@ -5,7 +5,7 @@
 
 use std::fmt;
 
-use crate::geometry::{BroadPhase, ContactPatch, Solid, TOUCH, contact, ground_contact};
+use crate::geometry::{BroadPhase, ContactPatch, Solid, Surrounding, Surroundings, TOUCH, contact};
 use crate::robot::ModuleType;
 use crate::robot::linkage::{Connection, Linkage, Port, frame_between};
 use crate::spatial::{Point, Pose};
@@ -60,6 +60,15 @@ pub enum Touched {
     Obstacle(usize),
 }
 
+impl From<Surrounding> for Touched {
+    fn from(what: Surrounding) -> Self {
+        match what {
+            Surrounding::Ground => Self::Ground,
+            Surrounding::Obstacle(index) => Self::Obstacle(index),
+        }
+    }
+}
+
 /// A structure with the way back to the linkage.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Assembly {
@@ -90,7 +99,7 @@ pub struct Assembler<'a> {
     connectors: Vec<Connector>,
     /// Index of the connector of each module type's first joint.
     motors: Vec<usize>,
-    obstacles: BroadPhase,
+    surroundings: Surroundings,
     tolerance: f64,
 }
 
@@ -115,8 +124,8 @@ impl<'a> Assembler<'a> {
             connectors.extend((0..module_type.joints.len()).map(|joint| motor(module_type, joint)));
         }
         let size = (0..linkage.modules.len()).map(|m| linkage.module_type(m).size()).fold(0.0, f64::max);
-        let obstacles = BroadPhase::new(linkage.environment.obstacles.iter().map(Solid::from).collect());
-        Self { linkage, first, bodies, connectors, motors, obstacles, tolerance: CONTACT * size }
+        let surroundings = Surroundings::new(&linkage.environment);
+        Self { linkage, first, bodies, connectors, motors, surroundings, tolerance: CONTACT * size }
     }
 
     /// The structure of a state: a body for each body of every module, a connection for each joint and each
@@ -231,16 +240,8 @@ impl<'a> Assembler<'a> {
             if self.is_fixed(self.bodies[index]) {
                 continue;
             }
-            if let Some(ground) = &environment.ground
-                && let Some(patch) = ground_contact(solid, ground.height, self.tolerance)
-            {
-                add_contacts(assembly, index, Anchor::World, Touched::Ground, ground.friction, patch);
-            }
-            for (obstacle, other) in self.obstacles.near(solid, self.tolerance) {
-                if let Some(patch) = contact(solid, other, self.tolerance) {
-                    let friction = environment.obstacles[obstacle].friction;
-                    add_contacts(assembly, index, Anchor::World, Touched::Obstacle(obstacle), friction, patch);
-                }
+            for (what, patch) in self.surroundings.contacts(solid, self.tolerance) {
+                add_contacts(assembly, index, Anchor::World, what.into(), what.friction(environment), patch);
             }
         }
     }

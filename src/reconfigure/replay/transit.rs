@@ -17,12 +17,14 @@ use super::legality::Path;
 /// Checks states and collects what is wrong.
 pub(super) struct Checker<'a> {
     assembler: &'a Assembler<'a>,
+    surroundings: Surroundings,
     pub judge: Judge<FaceConnection, Touched>,
 }
 
 impl<'a> Checker<'a> {
     pub fn new(start: &'a Configuration, assembler: &'a Assembler<'a>, required: f64) -> Self {
-        Self { assembler, judge: Judge::new(required, start.require.connected) }
+        let surroundings = Surroundings::new(&start.environment);
+        Self { assembler, surroundings, judge: Judge::new(required, start.require.connected) }
     }
 
     /// Checks a state at rest.
@@ -58,21 +60,13 @@ impl<'a> Checker<'a> {
     /// Books the first thing that the moving module hits.
     fn collide(&mut self, action: usize, before: &Configuration, path: &Path) {
         let solid = |m: usize| Solid::new(before.module_type(m).body().shape.clone(), before.pose(m));
-        let environment = &before.environment;
-        let others = (0..before.modules.len()).filter(|&m| m != path.module);
-        let modules = others.map(|m| (Touched::Module(m), solid(m)));
-        let obstacles = environment.obstacles.iter().enumerate().map(|(i, o)| (Touched::Obstacle(i), Solid::from(o)));
-        let solids =
-            modules.chain(obstacles).map(|(what, solid)| (what, Surroundings { solids: vec![solid], ground: None }));
-        let ground = environment
-            .ground
-            .as_ref()
-            .map(|ground| (Touched::Ground, Surroundings { solids: Vec::new(), ground: Some(ground.height) }));
         let moving = solid(path.module);
-        let hit = |(what, around): (Touched, Surroundings)| {
-            first_collision(&moving, &path.motion, &around).map(|phase| (phase, what))
-        };
-        let first = solids.chain(ground).filter_map(hit).min_by(|(a, _), (b, _)| a.total_cmp(b));
+        let others = (0..before.modules.len()).filter(|&m| m != path.module);
+        let modules = others
+            .filter_map(|m| first_collision(&moving, &path.motion, &solid(m)).map(|phase| (phase, Touched::Module(m))));
+        let around = self.surroundings.first_collision(&moving, &path.motion);
+        let around = around.map(|(phase, what)| (phase, what.into()));
+        let first = modules.chain(around).min_by(|(a, _), (b, _)| a.total_cmp(b));
         if let Some((phase, with)) = first {
             self.judge.fail(Some(action), Some(phase), Fault::Collision { with }, None);
         }

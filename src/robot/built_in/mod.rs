@@ -3,18 +3,20 @@
 //! Every number says where it comes from, or that it is an estimate.
 
 mod cube;
+mod freesn;
 pub mod rofi;
 
 use super::catalogue::Catalogue;
 
 /// Names of the built-in catalogues.
-pub const BUILT_IN: [&str; 2] = ["cube", "rofi"];
+pub const BUILT_IN: [&str; 3] = ["cube", "freesn", "rofi"];
 
 impl Catalogue {
     /// The built-in catalogue of this name, if there is one.
     pub fn built_in(name: &str) -> Option<Self> {
         match name {
             "cube" => Some(Self::cube()),
+            "freesn" => Some(Self::freesn()),
             "rofi" => Some(Self::rofi()),
             _ => None,
         }

@@ -19,7 +19,8 @@ use petgraph::unionfind::UnionFind;
 use crate::spatial::{Pose, Vec3};
 
 use super::catalogue::Catalogue;
-use super::configuration::{Environment, Matching, ModuleLoad, Requirement};
+use super::configuration::{Matching, ModuleLoad, Requirement};
+use super::environment::Environment;
 use super::module_type::ModuleType;
 
 pub use code::Code;

@@ -7,11 +7,12 @@ use super::super::super::json::clipped;
 use super::super::super::{codes, wire};
 use super::super::angle::{MICRO, steps};
 use super::super::connections::parts;
+use super::super::faults;
 use super::super::module_type::refuse;
 use super::super::names::Names;
 use super::super::rotation::direction;
-use crate::robot::linkage::{Code, Connection, Linkage, Port, Spot};
-use crate::robot::{Catalogue, PortPlace};
+use crate::robot::linkage::{Code, Connection, Linkage, Port, Spot, orientations_between};
+use crate::robot::{Catalogue, Fault, PortPlace};
 use crate::spatial::Vec3;
 
 /// Angle in rad up to which a direction or a spin is that of where the modules are: what ports may be off and still meet.
@@ -70,7 +71,8 @@ impl Listed {
         };
         if !same {
             let message = format!("the modules are where their ports engage at {is}");
-            let hint = "leave it out where both modules have a place, or leave the place of one of them out".to_string();
+            let hint =
+                "leave it out where both modules have a place, or leave the place of one of them out".to_string();
             findings.add(place, codes::APART, message, hint);
         }
     }
@@ -99,11 +101,17 @@ impl Reader<'_> {
                 wire::PairConnection::Rolled(rolled) => (&rolled.ports, place.key("ports")),
             };
             let kind = |module: usize| self.kinds.get(module).copied().flatten();
-            let ports = [0, 1].map(|i| {
-                port(&texts[i], self.modules, self.catalogue, kind, &ports_at.index(i), findings)
-            });
+            let ports =
+                [0, 1].map(|i| port(&texts[i], self.modules, self.catalogue, kind, &ports_at.index(i), findings));
             let [a, b] = [ports[0]?, ports[1]?];
             let connection = Connection::new(a, b);
+            let kinds = [a, b].map(|port| Some([kind(port.module)?, port.port]));
+            let fits = self.catalogue.connector_between(kinds[0]?, kinds[1]?).is_some();
+            if a.module == b.module || !fits {
+                let fault = if a.module == b.module { Fault::SelfConnection } else { Fault::PortsDoNotFit };
+                faults::of_place(fault, &[], &place, findings);
+                return None;
+            }
             let rolled = match wire {
                 wire::PairConnection::Pair(_) => None,
                 wire::PairConnection::Rolled(rolled) => Some(rolled),
@@ -125,14 +133,20 @@ impl Reader<'_> {
             let kind = self.kinds[port.module].expect("a port that was found is of a known type");
             &self.catalogue.module_types[kind].ports[port.port].place
         });
-        let angles = match places {
-            [PortPlace::Point { orientations: m, .. }, PortPlace::Point { orientations: n, .. }] => Some(*m.min(n)),
-            _ => None,
-        };
+        let at_points = places.iter().all(|place| matches!(place, PortPlace::Point { .. }));
+        let angles = at_points.then(|| orientations_between(places[0], places[1]));
         let Some(wire) = rolled else { return Some(if angles.is_some() { Said::AtZero } else { Said::Nothing }) };
         let keys = [
-            ("direction", wire.direction.is_some() && angles.is_some(), "two ports at points engage at an angle: write `roll_deg`"),
-            ("spin_deg", wire.spin_deg.is_some() && angles.is_some(), "two ports at points engage at an angle: write `roll_deg`"),
+            (
+                "direction",
+                wire.direction.is_some() && angles.is_some(),
+                "two ports at points engage at an angle: write `roll_deg`",
+            ),
+            (
+                "spin_deg",
+                wire.spin_deg.is_some() && angles.is_some(),
+                "two ports at points engage at an angle: write `roll_deg`",
+            ),
             ("roll_deg", wire.roll_deg.is_some() && angles.is_none(), "on a surface write `direction` and `spin_deg`"),
         ];
         for (key, misplaced, hint) in keys {
@@ -145,18 +159,18 @@ impl Reader<'_> {
         let step = 360.0 / f64::from(angles);
         let Some(roll) = steps(roll.0, step) else {
             let message = format!("these ports engage at multiples of {step} degrees, found {}", roll.0);
-            findings.add(&place.key("roll_deg"), codes::OUT_OF_RANGE, message, "the angle is counted from the ports' x axes".to_string());
+            findings.add(
+                &place.key("roll_deg"),
+                codes::OUT_OF_RANGE,
+                message,
+                "the angle is counted from the ports' x axes".to_string(),
+            );
             return None;
         };
         Some(Said::Code(Code::Docked { roll: roll.rem_euclid(angles as i32) }))
     }
 
-    fn on_surface(
-        &self,
-        wire: &wire::RolledConnection,
-        place: &Place<'_>,
-        findings: &mut Findings,
-    ) -> Option<Said> {
+    fn on_surface(&self, wire: &wire::RolledConnection, place: &Place<'_>, findings: &mut Findings) -> Option<Said> {
         let Some(towards) = wire.direction else {
             if wire.spin_deg.is_some() {
                 let hint = "a port turns about the `direction` in which it sits on the ball";
@@ -192,11 +206,7 @@ fn micro(degrees: f64, place: &Place<'_>, findings: &mut Findings) -> Option<i32
 }
 
 /// The spot of three angles in degrees, as plans write it.
-pub(in super::super) fn angles(
-    degrees: [wire::Real; 3],
-    place: &Place<'_>,
-    findings: &mut Findings,
-) -> Option<Spot> {
+pub(in super::super) fn angles(degrees: [wire::Real; 3], place: &Place<'_>, findings: &mut Findings) -> Option<Spot> {
     let keys = ["azimuth_deg", "polar_deg", "spin_deg"];
     let [azimuth, polar, spin] = [0, 1, 2].map(|i| micro(degrees[i].0, &place.key(keys[i]), findings));
     Some(Spot::new(azimuth?, polar?, spin?))

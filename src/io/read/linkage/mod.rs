@@ -42,8 +42,7 @@ pub(super) fn build(draft: Draft<'_>, findings: &mut Findings) -> Option<Linkage
     }
     let (modules, mut placed): (Vec<_>, Vec<_>) = modules.into_iter().flatten().unzip();
     let Surroundings { gravity, environment, loads, require } = surroundings;
-    let mut linkage =
-        Linkage { catalogue, gravity, environment, modules, connections: Vec::new(), loads, require };
+    let mut linkage = Linkage { catalogue, gravity, environment, modules, connections: Vec::new(), loads, require };
     let listed = listed.as_deref();
     placing::place(&mut linkage, listed.unwrap_or_default(), &mut placed);
     unplaced(&linkage, &placed, listed, &modules_at, findings);
