@@ -5,6 +5,7 @@ use crate::statics::{Connector, Model};
 use super::catalogue::Catalogue;
 use super::module_type::ModuleType;
 use super::problem::{Fault, Findings, Part, Problem};
+use super::shape::Shape;
 
 /// Relative difference of lengths that are meant to be equal: the rounding of
 /// decimal numbers and a division, a thousand times over.

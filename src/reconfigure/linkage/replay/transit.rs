@@ -14,12 +14,14 @@ use super::{Fault, Found, Judge, Refusal, Sample, claims, phases};
 /// Checks states and collects what is wrong.
 pub(super) struct Checker<'a> {
     assembler: &'a Assembler<'a>,
+    surroundings: Surroundings,
     pub judge: Judge<Held, Touched>,
 }
 
 impl<'a> Checker<'a> {
     pub fn new(start: &Linkage, assembler: &'a Assembler<'a>, required: f64) -> Self {
-        Self { assembler, judge: Judge::new(required, start.require.connected) }
+        let surroundings = Surroundings::new(&start.environment);
+        Self { assembler, surroundings, judge: Judge::new(required, start.require.connected) }
     }
 
     /// Checks a state at rest.
@@ -37,7 +39,7 @@ impl<'a> Checker<'a> {
         path: &Path,
         claimed: &[f64],
     ) -> Result<Found<Held>, Refusal> {
-        if let Some((phase, with)) = first_hit(before, path) {
+        if let Some((phase, with)) = first_hit(before, &self.surroundings, path) {
             self.judge.fail(Some(action), Some(phase), Fault::Collision { with }, None);
         }
         let phases = phases(path.steps, claimed);
@@ -71,29 +73,21 @@ fn is_connected(linkage: &Linkage) -> bool {
 
 /// The first thing that something hits on its way. Bodies that a joint or an engaged connection holds
 /// together do not hit each other.
-fn first_hit(before: &Linkage, path: &Path) -> Option<(f64, Touched)> {
+fn first_hit(before: &Linkage, surroundings: &Surroundings, path: &Path) -> Option<(f64, Touched)> {
     let poses = poses_at(before, path, 0.0);
     let solid = |body: BodyOf| {
         let kind = &before.module_type(body.module).bodies[body.body];
         Solid::new(kind.shape.clone(), poses[body.module][body.body] * kind.shape_pose)
     };
-    let environment = &before.environment;
     let all = Joined::new(before).bodies;
     let hits = path.carried.par_iter().filter_map(|&mover| {
-        let others = all.iter().filter(|&&other| !path.carried.contains(&other) && !held(before, mover, other));
-        let bodies = others.map(|&other| (Touched::Body(other), vec![solid(other)]));
-        let obstacles = environment.obstacles.iter().enumerate();
-        let obstacles = obstacles.map(|(index, obstacle)| (Touched::Obstacle(index), vec![Solid::from(obstacle)]));
-        let solids = bodies.chain(obstacles).map(|(what, solids)| (what, Surroundings { solids, ground: None }));
-        let ground = environment
-            .ground
-            .as_ref()
-            .map(|ground| (Touched::Ground, Surroundings { solids: Vec::new(), ground: Some(ground.height) }));
         let moving = solid(mover);
-        let hit = |(what, around): (Touched, Surroundings)| {
-            first_collision(&moving, &path.motion, &around).map(|phase| (phase, what))
-        };
-        solids.chain(ground).filter_map(hit).min_by(|(a, _), (b, _)| a.total_cmp(b))
+        let others = all.iter().filter(|&&other| !path.carried.contains(&other) && !held(before, mover, other));
+        let bodies = others.filter_map(|&other| {
+            first_collision(&moving, &path.motion, &solid(other)).map(|phase| (phase, Touched::Body(other)))
+        });
+        let around = surroundings.first_collision(&moving, &path.motion);
+        bodies.chain(around.map(|(phase, what)| (phase, what.into()))).min_by(|(a, _), (b, _)| a.total_cmp(b))
     });
     let mut hits: Vec<(f64, Touched)> = hits.collect();
     hits.sort_by(|(a, _), (b, _)| a.total_cmp(b));
