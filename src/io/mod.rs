@@ -17,10 +17,12 @@ mod diagnostics;
 mod document;
 mod excerpt;
 mod findings;
+mod form;
 mod json;
 mod layout;
 mod plan_document;
 mod read;
+mod rofi;
 mod schema;
 mod suggest;
 mod turn;
@@ -34,6 +36,7 @@ pub use document::{
     Checkable, LARGEST_FILE, LatticeProblem, LinkageProblem, NamedStructure, Problem, Resolve, SourceFile, Verifiable,
     no_references,
 };
+pub use form::Form;
 pub use plan_document::{Contradiction, PlanDocument};
 pub use read::{
     read_catalogue, read_certificate, read_checkable, read_configuration, read_linkage, read_plan, read_problem,
@@ -43,5 +46,5 @@ pub use schema::{schema, schema_names};
 pub use turn::AxisAngle;
 pub use write::{
     Unwritable, in_space_because, write_catalogue, write_certificate, write_check, write_configuration, write_linkage,
-    write_plan, write_structure,
+    write_plan, write_rofi, write_structure,
 };

@@ -9,9 +9,10 @@ use serde_json::Value;
 use super::{layout, wire};
 
 /// The formats that have a schema.
-const NAMES: [&str; 7] = ["structure", "catalogue", "configuration", "plan", "check", "certificate", "errors"];
+const NAMES: [&str; 9] =
+    ["structure", "catalogue", "configuration", "plan", "check", "certificate", "errors", "rofi-world", "rofi-voxels"];
 
-static SCHEMAS: LazyLock<[Value; 7]> = LazyLock::new(|| {
+static SCHEMAS: LazyLock<[Value; 9]> = LazyLock::new(|| {
     [
         generate::<wire::Structure>(),
         generate::<wire::Catalogue>(),
@@ -20,6 +21,8 @@ static SCHEMAS: LazyLock<[Value; 7]> = LazyLock::new(|| {
         generate::<wire::Check>(),
         generate::<wire::Certificate>(),
         generate::<wire::Errors>(),
+        generate::<wire::RofiWorld>(),
+        generate::<wire::VoxelWorld>(),
     ]
 });
 

@@ -5,6 +5,10 @@ use std::{fs, io};
 
 use steadfast::io::{Form, read_linkage, write_linkage, write_rofi};
 
+use steadfast::robot::linkage::Linkage;
+use steadfast::robot::{Environment, Requirement};
+use steadfast::spatial::Vec3;
+
 use crate::arguments::{ConvertArguments, RobotFormat};
 use crate::exit::Exit;
 use crate::{files, output};
@@ -14,17 +18,15 @@ use crate::{files, output};
 /// # Errors
 /// The output cannot be written.
 pub fn run(arguments: &ConvertArguments) -> io::Result<Exit> {
-    let Some(to) = arguments.to.or_else(|| arguments.output.as_deref().and_then(by_ending)) else {
-        output::message("error: say --to FORMAT: the name of the output does not tell")?;
-        return Ok(Exit::Usage);
-    };
+    let by_ending = arguments.output.as_deref().and_then(by_ending);
+    let to = arguments.to.or(by_ending).unwrap_or(RobotFormat::Configuration);
     let file = files::read(&arguments.input);
     let mut linkage = match read_linkage(&file, &files::resolve) {
         Ok(linkage) => linkage,
         Err(diagnostics) => return output::bad_input(&diagnostics, false),
     };
     if arguments.robot_only {
-        linkage = linkage.on_its_own();
+        on_its_own(&mut linkage);
     }
     let form = match to {
         RobotFormat::Configuration => Form::Own,
@@ -53,6 +55,17 @@ pub fn run(arguments: &ConvertArguments) -> io::Result<Exit> {
         }
     }
     Ok(Exit::Yes)
+}
+
+/// Leaves out what surrounds a robot and what is asked of it. Pads are fixed in the platform's formats.
+fn on_its_own(linkage: &mut Linkage) {
+    linkage.gravity = Vec3::zeros();
+    linkage.environment = Environment::default();
+    linkage.loads = Vec::new();
+    linkage.require = Requirement::default();
+    for module in &mut linkage.modules {
+        module.fixed &= linkage.catalogue.module_types[module.module_type].joints.is_empty();
+    }
 }
 
 /// The format that the name of a file tells: `.rofi` and `.in` are the platform's text; what a `.json` holds

@@ -28,7 +28,10 @@ fn surroundings(linkage: &Linkage) -> Reasons {
         (!linkage.loads.is_empty(), "loads"),
         (linkage.require.margin != 0.0 || !linkage.require.connected, "what transient states must satisfy"),
     ];
-    said.into_iter().filter(|(there, _)| *there).map(|(_, what)| format!("the format has no place for {what}")).collect()
+    said.into_iter()
+        .filter(|(there, _)| *there)
+        .map(|(_, what)| format!("the format has no place for {what}"))
+        .collect()
 }
 
 /// What a module is, in the platform's terms.
@@ -73,7 +76,8 @@ fn kind(linkage: &Linkage, module: usize) -> Option<Kind> {
     let is_universal = found.name == "universal" && found.joints.len() == 3 && names.eq(words::DOCKS);
     is_universal.then(|| {
         let steps = &linkage.modules[module].joints;
-        let degrees: Vec<_> = steps.iter().zip(&found.joints).map(|(&p, joint)| f64::from(p) * joint.step_degrees).collect();
+        let degrees: Vec<_> =
+            steps.iter().zip(&found.joints).map(|(&p, joint)| f64::from(p) * joint.step_degrees).collect();
         let gamma = degrees[2].rem_euclid(360.0);
         Kind::Universal([degrees[0], degrees[1], if gamma < 180.0 { gamma } else { gamma - 360.0 }])
     })
@@ -230,9 +234,12 @@ pub(super) fn voxels(linkage: &Linkage) -> Result<wire::VoxelWorld, Reasons> {
             }
         }
     }
-    let open = linkage.touching().into_iter().filter(|connection| linkage.connections.binary_search(connection).is_err());
+    let open =
+        linkage.touching().into_iter().filter(|connection| linkage.connections.binary_search(connection).is_err());
     reasons.extend(open.map(|connection| {
-        let port = |port: Port| format!("{}:{}", linkage.modules[port.module].id, linkage.module_type(port.module).ports[port.port].name);
+        let port = |port: Port| {
+            format!("{}:{}", linkage.modules[port.module].id, linkage.module_type(port.module).ports[port.port].name)
+        };
         let [a, b] = connection.ports.map(port);
         format!("voxels join all docks that face each other, and {a} and {b} are not joined")
     }));

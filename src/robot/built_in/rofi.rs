@@ -5,10 +5,12 @@
 //! convention that all bodies of a module share one frame at joint zero: that of shoe A.
 
 use std::f64::consts::{FRAC_PI_2, PI};
+use std::sync::Arc;
 
 use nalgebra::Vector3;
 
 use crate::robot::catalogue::Catalogue;
+use crate::robot::hull::Hull;
 use crate::robot::module_type::{BodyType, JointType, ModuleType, PortPlace, PortType};
 use crate::robot::shape::Shape;
 use crate::spatial::{Pose, Rotation, Vec3};
@@ -218,8 +220,8 @@ fn squares(axes: [Vec3; 3]) -> Shape {
         let (u, v) = (Vec3::new(axis.y, axis.z, axis.x), Vec3::new(axis.z, axis.x, axis.y));
         [[1.0, 1.0], [1.0, -1.0], [-1.0, -1.0], [-1.0, 1.0]].map(|[a, b]| axis * DOCK + (u * a + v * b) * half_side)
     });
-    let _: Vec<Vec3> = corners.collect();
-    Shape::Cuboid { half_extents: Vec3::repeat(CELL / 4.0) }
+    let hull = Hull::new(corners.collect()).expect("three squares do not lie in a plane");
+    Shape::Convex(Arc::new(hull))
 }
 
 /// A pad: docks in a plane, number i * height + j of them at (0, i, j) cells, all looking along -x.

@@ -63,8 +63,7 @@ pub(in super::super) fn build(
     findings: &mut Findings,
 ) -> Option<Linkage> {
     let before = findings.count();
-    let modules: Vec<_> =
-        world.modules.iter().filter_map(|module| module_of(module, &catalogue, findings)).collect();
+    let modules: Vec<_> = world.modules.iter().filter_map(|module| module_of(module, &catalogue, findings)).collect();
     if findings.count() > before {
         return None;
     }
@@ -121,7 +120,8 @@ fn module_of(module: &Module<'_>, catalogue: &Catalogue, findings: &mut Findings
                     let position = steps.round();
                     let is_whole = (position - steps).abs() * kind.step_degrees <= SAME_DEGREES;
                     let (code, message, hint) = if !is_whole || !(position.abs() < 1e6) {
-                        let message = format!("{name} is {degrees} degrees, and turns in steps of {}", kind.step_degrees);
+                        let message =
+                            format!("{name} is {degrees} degrees, and turns in steps of {}", kind.step_degrees);
                         (codes::UNSUPPORTED, message, "joints of RoFI modules turn in whole degrees here")
                     } else if !kind.allows(position as i32) {
                         let message = format!("{name} is {degrees} degrees");
@@ -164,8 +164,11 @@ fn check_docks(world: &World<'_>, joints: &[Joint<'_>], findings: &mut Findings)
         for end in joint.ends {
             let first = *taken.entry(end).or_insert(index);
             if first != index {
-                let message =
-                    format!("a dock of module {} is joined already, by number {} of the joints", world.modules[end.0].id, first + 1);
+                let message = format!(
+                    "a dock of module {} is joined already, by number {} of the joints",
+                    world.modules[end.0].id,
+                    first + 1
+                );
                 joint.mark.report(findings, codes::DUPLICATE_CONNECTION, message, "a dock joins one other");
                 break;
             }
@@ -204,8 +207,14 @@ fn place(linkage: &mut Linkage, world: &World<'_>, joints: &[Joint<'_>], finding
             module.pose = pose;
             reach(linkage, &mut placed, anchor.module);
         } else if !same(&module.pose, &pose) {
-            let message = format!("module {} is elsewhere already, by what is said before of it or by joints", module.id);
-            anchor.mark.report(findings, codes::APART, message, "one place for every group of joined modules is enough");
+            let message =
+                format!("module {} is elsewhere already, by what is said before of it or by joints", module.id);
+            anchor.mark.report(
+                findings,
+                codes::APART,
+                message,
+                "one place for every group of joined modules is enough",
+            );
         }
     }
     if world.anchors.is_empty() && !linkage.modules.is_empty() {
@@ -218,7 +227,9 @@ fn place(linkage: &mut Linkage, world: &World<'_>, joints: &[Joint<'_>], finding
     }
     for joint in joints.iter().filter(|joint| joint.ends.iter().all(|end| placed[end.0])) {
         let [first, second] = joint.ends.map(port);
-        if first.module != second.module && !same(&beyond(linkage, first, second, joint.quarters), &linkage.modules[second.module].pose) {
+        if first.module != second.module
+            && !same(&beyond(linkage, first, second, joint.quarters), &linkage.modules[second.module].pose)
+        {
             let hint = "follow the joints around the loop: a position or an orientation on it is not what is meant";
             joint.mark.report(findings, codes::APART, "the two docks do not meet so", hint);
         }

@@ -5,7 +5,10 @@ use std::collections::HashMap;
 use super::super::super::codes;
 use super::super::super::findings::{Document, Findings, Place};
 use super::super::super::json::{Span, clipped};
-use super::super::super::rofi::{QUARTERS, text::{DOCKS, ORIENTATIONS, SIDES}};
+use super::super::super::rofi::{
+    QUARTERS,
+    text::{DOCKS, ORIENTATIONS, SIDES},
+};
 use super::world::{Joint, Joints, Kind, Mark, Module, World};
 
 /// A word of a line and where it stands.

@@ -71,7 +71,8 @@ pub(super) fn parse<'a>(place: &Place<'a>, findings: &mut Findings) -> Option<Wo
 
 fn body<'a>(wire: &wire::Voxel, place: &Place<'a>, findings: &mut Findings) -> Option<Body<'a>> {
     let direction = one_of(place, [("body_dir", wire.body_dir), ("other_body_dir", wire.other_body_dir)], findings);
-    let rotated = one_of(place, [("shoe_rotated", wire.shoe_rotated), ("is_shoe_rotated", wire.is_shoe_rotated)], findings);
+    let rotated =
+        one_of(place, [("shoe_rotated", wire.shoe_rotated), ("is_shoe_rotated", wire.is_shoe_rotated)], findings);
     let joint = match wire.joint_pos {
         -90 | -1 => Some(-90.0),
         0 => Some(0.0),

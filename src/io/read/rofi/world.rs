@@ -19,8 +19,19 @@ impl<'a> Mark<'a> {
         Self { place: root, span }
     }
 
+    /// The value that it is in.
+    pub(in super::super) fn place(&self) -> &Place<'a> {
+        &self.place
+    }
+
     /// Adds a problem there.
-    pub(super) fn report(&self, findings: &mut Findings, code: Code, message: impl Into<String>, hint: impl Into<String>) {
+    pub(super) fn report(
+        &self,
+        findings: &mut Findings,
+        code: Code,
+        message: impl Into<String>,
+        hint: impl Into<String>,
+    ) {
         findings.add_at(&self.place, self.span, code, message.into(), Some(hint.into()));
     }
 }
@@ -39,7 +50,8 @@ pub(in super::super) struct World<'a> {
     pub(super) joints: Joints<'a>,
     /// Where components are. Without any, the first module's shoe A is the origin.
     pub(super) anchors: Vec<Anchor<'a>>,
-    pub(super) whole: Mark<'a>,
+    /// All of the file.
+    pub(in super::super) whole: Mark<'a>,
 }
 
 /// A module.
