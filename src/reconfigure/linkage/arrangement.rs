@@ -55,11 +55,6 @@ impl Arrangements {
         Self { frame, places: Mutex::new(Places::new(classes)) }
     }
 
-    /// Up to which displacement robots are the same.
-    pub fn frame(&self) -> Frame {
-        self.frame
-    }
-
     /// The modules of an arrangement, in the order of their places.
     pub fn modules(&self, arrangement: &Arrangement) -> Vec<Arc<Place>> {
         let places = self.lock();

@@ -3,6 +3,8 @@
 //! Knows solids; knows neither what holds nor forces.
 
 use crate::geometry::{Motion, Solid, Surroundings, first_collision};
+use crate::robot::Shape;
+use crate::spatial::Vec3;
 
 use super::action::Action;
 use super::moves::{Step, View};
@@ -26,12 +28,7 @@ struct Body {
 impl Clearance {
     /// Of robots in the environment of a problem's start.
     pub fn new(problem: &Problem) -> Self {
-        let environment = &problem.start.environment;
-        let around = Surroundings {
-            solids: environment.obstacles.iter().map(Solid::from).collect(),
-            ground: environment.ground.as_ref().map(|ground| ground.height),
-        };
-        Self { around }
+        Self { around: Surroundings::new(&problem.start.environment) }
     }
 
     /// Whether nothing is hit during a move. Bodies that a joint or the rolling connection holds together do not hit
@@ -40,12 +37,10 @@ impl Clearance {
         let (moving, resting): (Vec<Body>, Vec<Body>) =
             bodies(view).partition(|body| view.moves(step, body.module, body.body));
         moving.iter().all(|mover| {
-            let near =
-                resting.iter().filter(|other| may_meet(mover, other, &step.motion) && !held(view, step, mover, other));
-            let mut around = self.around.clone();
-            around.solids.extend(near.map(|other| other.solid.clone()));
-            let is_alone = around.solids.is_empty() && around.ground.is_none();
-            is_alone || first_collision(&mover.solid, &step.motion, &around).is_none()
+            let may_hit = |other: &&Body| may_meet(mover, other, &step.motion) && !held(view, step, mover, other);
+            let mut near = resting.iter().filter(may_hit);
+            near.all(|other| first_collision(&mover.solid, &step.motion, &other.solid).is_none())
+                && self.around.first_collision(&mover.solid, &step.motion).is_none()
         })
     }
 }
@@ -55,16 +50,26 @@ fn bodies<'a>(view: &'a View) -> impl Iterator<Item = Body> + 'a {
         let kinds = &view.kind(module).bodies;
         kinds.iter().zip(place.bodies.iter()).enumerate().map(move |(body, (kind, pose))| {
             let solid = Solid::new(kind.shape.clone(), pose * kind.shape_pose);
-            let radius = solid.vertices().iter().map(|p| (p - solid.centre()).norm()).fold(0.0, f64::max);
+            let radius = radius(&solid);
             Body { module, body, solid, radius }
         })
     })
 }
 
+/// Distance of the farthest point of a solid from its centre, in m.
+fn radius(solid: &Solid) -> f64 {
+    match &solid.shape {
+        Shape::Ball { radius } => *radius,
+        Shape::Cuboid { .. } | Shape::Cylinder { .. } | Shape::Convex(_) => {
+            solid.vertices().iter().map(|p| (p - solid.centre()).norm()).fold(0.0, f64::max)
+        }
+    }
+}
+
 /// Whether the balls around two solids meet while the first one turns: its centre goes round a circle.
 fn may_meet(mover: &Body, other: &Body, motion: &Motion) -> bool {
     let Motion::Rotation { centre, axis, .. } = motion else { return true };
-    let polar = |point: crate::spatial::Vec3| {
+    let polar = |point: Vec3| {
         let arm = point - centre;
         let along = axis.dot(&arm);
         (along, (arm - axis.into_inner() * along).norm())

@@ -225,6 +225,17 @@ impl Search<'_> {
                 let is_turn = turned.iter().all(|entry| entry.min(1.0 - entry) <= MEETING);
                 centred && is_turn && (turned * b - a).norm() <= self.tolerance
             }
+            (Shape::Cylinder { radius: a, height: h }, Shape::Cylinder { radius: b, height: k }) => {
+                let along = between.rotation * Vec3::z();
+                centred && a == b && h == k && along.x.hypot(along.y) <= MEETING
+            }
+            (Shape::Ball { radius: a }, Shape::Ball { radius: b }) => centred && a == b,
+            (Shape::Convex(a), Shape::Convex(b)) => {
+                let moved = |p: &Vec3| (between * Point::from(*p)).coords;
+                let is_corner = |p: Vec3| a.corners().iter().any(|q| (p - q).norm() <= self.tolerance);
+                a.corners().len() == b.corners().len() && b.corners().iter().all(|p| is_corner(moved(p)))
+            }
+            (Shape::Cuboid { .. } | Shape::Cylinder { .. } | Shape::Ball { .. } | Shape::Convex(_), _) => false,
         }
     }
 
