@@ -11,6 +11,7 @@
 
 mod assembled;
 mod certificate_document;
+mod check_report;
 mod codes;
 mod conform;
 mod diagnostics;
@@ -20,6 +21,7 @@ mod findings;
 mod form;
 mod json;
 mod layout;
+mod load_range_report;
 mod plan_document;
 mod read;
 mod rofi;
@@ -30,6 +32,7 @@ mod wire;
 mod write;
 
 pub use certificate_document::CertificateDocument;
+pub use check_report::CheckReport;
 pub use codes::{CODES, Code};
 pub use diagnostics::{Diagnostic, Diagnostics};
 pub use document::{
@@ -37,6 +40,7 @@ pub use document::{
     no_references,
 };
 pub use form::Form;
+pub use load_range_report::LoadRangeReport;
 pub use plan_document::{Contradiction, PlanDocument};
 pub use read::{
     read_catalogue, read_certificate, read_checkable, read_configuration, read_linkage, read_plan, read_problem,
@@ -46,5 +50,5 @@ pub use schema::{schema, schema_names};
 pub use turn::AxisAngle;
 pub use write::{
     Unwritable, in_space_because, write_catalogue, write_certificate, write_check, write_configuration, write_linkage,
-    write_plan, write_rofi, write_structure,
+    write_load_range, write_plan, write_rofi, write_structure,
 };

@@ -5,7 +5,6 @@ use crate::statics::{Connector, Model};
 use super::catalogue::Catalogue;
 use super::module_type::ModuleType;
 use super::problem::{Fault, Findings, Part, Problem};
-use super::shape::Shape;
 
 /// Relative difference of lengths that are meant to be equal: the rounding of
 /// decimal numbers and a division, a thousand times over.
@@ -35,9 +34,12 @@ impl Catalogue {
         }
         findings.positive(part, "pitch", &[lattice.pitch]);
         let off = |h: &f64| (2.0 * h - lattice.pitch).abs() > SAME_LENGTH * lattice.pitch;
-        let is_cell = body.shape.cuboid().is_some_and(|half_extents| !half_extents.iter().any(|h| *h > 0.0 && off(h)));
-        if lattice.pitch > 0.0 && !is_cell {
-            findings.add(part, "shape", Fault::NotACell);
+        let is_cell = body.shape.cuboid().is_some_and(|half_extents| {
+            let positive = lattice.pitch > 0.0 && half_extents.iter().all(|h| *h > 0.0);
+            !(positive && half_extents.iter().any(off))
+        });
+        if !is_cell {
+            findings.add(part, "half_extents", Fault::NotACell);
         }
         if findings.in_range(part, "face", lattice.face, self.connectors.len())
             && !is_symmetric(&self.connectors[lattice.face].model)

@@ -2,6 +2,7 @@
 
 use crate::spatial::Pose;
 
+use super::problem::{Findings, Part};
 use super::terrain::Terrain;
 
 /// Horizontal frictional ground, filling everything below its height.
@@ -33,4 +34,24 @@ pub struct Environment {
     pub obstacles: Vec<Obstacle>,
     /// Friction coefficient between unconnected modules.
     pub module_friction: f64,
+}
+
+impl Environment {
+    /// Adds everything that is wrong with the environment.
+    pub(super) fn check(&self, findings: &mut Findings) {
+        findings.not_negative(Part::Environment, "module_friction", &[self.module_friction]);
+        if let Some(ground) = &self.ground {
+            findings.finite(Part::Ground, "height", &[ground.height]);
+            findings.not_negative(Part::Ground, "friction", &[ground.friction]);
+        }
+        for (i, obstacle) in self.obstacles.iter().enumerate() {
+            let part = Part::Obstacle(i);
+            if let Terrain::Solid(shape) = &obstacle.shape {
+                shape.check(findings, part);
+            }
+            findings.finite(part, "position", obstacle.pose.translation.vector.as_slice());
+            findings.finite(part, "rotation", obstacle.pose.rotation.coords.as_slice());
+            findings.not_negative(part, "friction", &[obstacle.friction]);
+        }
+    }
 }

@@ -21,7 +21,7 @@ impl ModuleType {
             findings.finite(part, "com", body.com.as_slice());
             findings.finite(part, "shape_position", body.shape_pose.translation.vector.as_slice());
             findings.finite(part, "shape_rotation", body.shape_pose.rotation.coords.as_slice());
-            findings.positive(part, "shape", &body.shape.measures());
+            body.shape.check(findings, part);
         }
         self.check_joints(findings, index);
         for (i, port) in self.ports.iter().enumerate() {

@@ -32,17 +32,6 @@ pub enum Shape {
 }
 
 impl Shape {
-    /// Its measures in m, which are positive in a sound shape; none for a hull,
-    /// which is sound by construction.
-    pub(super) fn measures(&self) -> Vec<f64> {
-        match self {
-            Self::Cuboid { half_extents } => half_extents.iter().copied().collect(),
-            Self::Cylinder { radius, height } => vec![*radius, *height],
-            Self::Ball { radius } => vec![*radius],
-            Self::Convex(_) => Vec::new(),
-        }
-    }
-
     /// Half extents in m of a cuboid; `None` for other shapes.
     pub fn cuboid(&self) -> Option<&Vec3> {
         match self {
@@ -59,9 +48,17 @@ impl Shape {
         }
     }
 
-    /// Adds everything that is wrong with the shape, which is that of a part.
+    /// Adds everything that is wrong with the shape, which is that of a part. A hull is sound by construction.
     pub(super) fn check(&self, findings: &mut Findings, part: Part) {
-        findings.positive(part, "shape", &self.measures());
+        match self {
+            Self::Cuboid { half_extents } => findings.positive(part, "half_extents", half_extents.as_slice()),
+            Self::Cylinder { radius, height } => {
+                findings.positive(part, "radius", &[*radius]);
+                findings.positive(part, "height", &[*height]);
+            }
+            Self::Ball { radius } => findings.positive(part, "radius", &[*radius]),
+            Self::Convex(_) => {}
+        }
     }
 }
 

@@ -151,7 +151,7 @@ fn every_fault_of_a_configuration_is_found_where_it_is() {
             Box::new(|c| {
                 c.environment.obstacles[0].shape = Shape::Cuboid { half_extents: Vec3::new(1.0, 0.0, 1.0) }.into()
             }),
-            one(Part::Obstacle(0), "shape", Fault::NotPositive),
+            one(Part::Obstacle(0), "half_extents", Fault::NotPositive),
         ),
         (
             Box::new(|c| c.environment.obstacles[0].pose.translation.vector.y = f64::NAN),
@@ -287,7 +287,7 @@ fn every_fault_of_a_catalogue_is_found_where_it_is() {
         (
             Box::new(|c| c.module_types[0].lattice.as_mut().expect("a cube").pitch = 0.06),
             Part::ModuleType(0),
-            "shape",
+            "half_extents",
             Fault::NotACell,
         ),
         (

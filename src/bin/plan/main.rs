@@ -9,7 +9,10 @@ mod convert;
 mod exit;
 mod explain;
 mod files;
+mod gives_way;
+mod load_range;
 mod naming;
+mod order;
 mod output;
 mod progress;
 mod schema;
@@ -32,6 +35,7 @@ fn main() -> ExitCode {
         (Some(Command::Verify(verify)), _) => verify::run(&verify),
         (Some(Command::Check(check)), _) => check::run(&check),
         (Some(Command::Convert(convert)), _) => convert::run(&convert),
+        (Some(Command::LoadRange(range)), _) => load_range::run(&range),
         (Some(Command::Schema(schema)), _) => schema::run(&schema),
         (None, Some(planning)) => search::run(&planning),
         (None, None) => {

@@ -47,10 +47,12 @@ fn field<'a>(part: &Place<'a>, name: &str) -> Place<'a> {
         "hinge" => &["hinge"],
         "module_type" => &["type"],
         "placement" => &["cell"],
+        "half_extents" if part.key("bodies").node().is_some() => {
+            return measures(&part.key("bodies").index(0).key("shape"));
+        }
         "surface" => &["surface"],
         "range" => &["range_deg"],
         "joints" => &["joints"],
-        "shape" if part.key("bodies").node().is_some() => return measures(&part.key("bodies").index(0).key("shape")),
         "com" => return part.key("bodies").index(0).key("com_m"),
         _ => &[],
     };

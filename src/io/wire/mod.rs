@@ -10,6 +10,8 @@ mod check;
 mod configuration;
 mod connector;
 mod errors;
+mod gives_way;
+mod load_range;
 mod number;
 mod outcome;
 mod plan;
@@ -25,8 +27,8 @@ pub(super) use certificate::{
     Carried, CarriedPoints, CarriedWrench, Certificate, CertificateFormat, Mechanism, Stress, Twist,
 };
 pub(super) use check::{
-    Check, CheckFormat, CheckedConnection, CheckedContact, Distribution, Explanation, LeftOut, RemainingBlock, Verdict,
-    Wrench,
+    Check, CheckFormat, CheckedConnection, CheckedContact, Distribution, Explanation, LeftOut, Level, Order,
+    RemainingBlock, Verdict, Wrench,
 };
 pub(super) use configuration::{
     CatalogueRef, Configuration, ConfigurationFormat, Connections, Environment, FrameMatch, Ground, Match, Module,
@@ -34,6 +36,8 @@ pub(super) use configuration::{
 };
 pub(super) use connector::Connector;
 pub(super) use errors::{Errors, ErrorsFormat, FileError};
+pub(super) use gives_way::{ContactMotion, GivesWay, MovingContact};
+pub(super) use load_range::{Failure, LoadRange, LoadRangeFormat, RangeEnd, RangeOutcome};
 pub(super) use number::{AngleRange, Bound, Limit, NonNegative, Positive, Real, reals};
 pub(super) use outcome::{Impossible, Outcome, StoppedBy, Which};
 pub(super) use plan::{Alternative, Bottleneck, Bracket, Objective, Plan, PlanFormat, Proof, Statistics};
