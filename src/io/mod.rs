@@ -18,11 +18,13 @@ mod diagnostics;
 mod document;
 mod excerpt;
 mod findings;
+mod form;
 mod json;
 mod layout;
 mod load_range_report;
 mod plan_document;
 mod read;
+mod rofi;
 mod schema;
 mod suggest;
 mod turn;
@@ -37,6 +39,7 @@ pub use document::{
     Checkable, LARGEST_FILE, LatticeProblem, LinkageProblem, NamedStructure, Problem, Resolve, SourceFile, Verifiable,
     no_references,
 };
+pub use form::Form;
 pub use load_range_report::LoadRangeReport;
 pub use plan_document::{Contradiction, PlanDocument};
 pub use read::{
@@ -47,5 +50,5 @@ pub use schema::{schema, schema_names};
 pub use turn::AxisAngle;
 pub use write::{
     Unwritable, in_space_because, write_catalogue, write_certificate, write_check, write_configuration, write_linkage,
-    write_load_range, write_plan, write_structure,
+    write_load_range, write_plan, write_rofi, write_structure,
 };

@@ -74,7 +74,7 @@ fn report(problem: &Problem, place: &Place<'_>, ids: &[&str], findings: &mut Fin
 
 /// Code, message and hint; `None` for what was said already when the file's
 /// form and names were checked.
-fn describe(problem: &Problem, ids: &[&str]) -> Option<(Code, String, &'static str)> {
+pub(super) fn describe(problem: &Problem, ids: &[&str]) -> Option<(Code, String, &'static str)> {
     let module = |index: usize| match ids.get(index) {
         Some(id) => format!("module `{}`", clipped(id)),
         None => format!("module {index}"),

@@ -4,36 +4,86 @@ use std::sync::Arc;
 
 use super::super::codes;
 use super::super::document::{LatticeProblem, LinkageProblem, Problem, Resolve};
-use super::super::findings::{Findings, Place};
+use super::super::findings::{Document, Findings, Place};
+use super::super::form::Form;
+use super::super::json::clipped;
 use super::super::wire;
 use super::configuration::{Draft, Robot, Surroundings, module_names, read_start};
 use super::decode::decode;
 use super::names::Names;
 use super::robots::Compared;
 use super::rotation::vector;
-use super::{catalogue, environment, lattice, linkage, matching};
+use super::{catalogue, environment, lattice, linkage, matching, rofi};
 use crate::robot::{self, Configuration, Goal, Matching, Requirement};
 use crate::spatial::Vec3;
 
-/// Reads a start and a goal; either may be missing because its text was no JSON.
+/// Reads a start and a goal, each of this program's format or of the RoFI platform's; either may be missing because
+/// its text could not be parsed.
+pub(super) fn read_documents(
+    start: Option<&Document<'_>>,
+    goal: Option<&Document<'_>>,
+    resolve: Resolve<'_>,
+    findings: &mut Findings,
+) -> Option<Problem> {
+    let [start_is_own, goal_is_own] =
+        [start, goal].map(|document| document.is_none_or(|found| found.form == Form::Own));
+    let [start_world, goal_world] =
+        [start, goal].map(|document| document.and_then(|document| rofi::parse(document, findings)));
+    let robot = match start_is_own {
+        true => start.and_then(|start| read_own_start(&start.root(), resolve, findings)),
+        false => start_world.and_then(|world| rofi::start(&world, goal_world.as_ref(), findings)).map(Robot::Linkage),
+    };
+    if goal_is_own {
+        let goal = goal.map(Document::root);
+        return with_goal(robot, goal.as_ref(), resolve, findings);
+    }
+    let world = goal_world?;
+    match robot {
+        Some(Robot::Linkage(start)) => {
+            let goal = rofi::goal(&world, &start, findings)?;
+            Some(Problem::Linkage(LinkageProblem { start, goal }))
+        }
+        Some(Robot::Lattice(start)) => {
+            let message = format!("the start's catalogue is `{}`", clipped(&start.catalogue.name));
+            let hint = "start and goal are robots of one catalogue".to_string();
+            findings.add(world.whole.place(), codes::MODULE_TYPES, message, hint);
+            None
+        }
+        // The goal's own problems are told even so.
+        None => {
+            rofi::start(&world, None, findings);
+            None
+        }
+    }
+}
+
+/// Reads a start and a goal of this program's format.
 pub(super) fn read_problem(
-    start: Option<&Place<'_>>,
+    start: &Place<'_>,
+    goal: &Place<'_>,
+    resolve: Resolve<'_>,
+    findings: &mut Findings,
+) -> Option<Problem> {
+    let start = read_own_start(start, resolve, findings);
+    with_goal(start, Some(goal), resolve, findings)
+}
+
+fn read_own_start(place: &Place<'_>, resolve: Resolve<'_>, findings: &mut Findings) -> Option<Robot> {
+    if place.key("match").node().is_some() {
+        let message = "a start is not compared with anything";
+        let hint = "`match` belongs into the goal".to_string();
+        findings.add(&place.key("match"), codes::START_AND_GOAL, message, hint);
+    }
+    read_start(place, resolve, findings, |draft, findings| draft.build(findings))
+}
+
+/// Reads the goal of a start, which may be missing after a problem.
+fn with_goal(
+    start: Option<Robot>,
     goal: Option<&Place<'_>>,
     resolve: Resolve<'_>,
     findings: &mut Findings,
 ) -> Option<Problem> {
-    let start = start.and_then(|place| {
-        if place.key("match").node().is_some() {
-            let message = "a start is not compared with anything";
-            findings.add(
-                &place.key("match"),
-                codes::START_AND_GOAL,
-                message,
-                "`match` belongs into the goal".to_string(),
-            );
-        }
-        read_start(place, resolve, findings, |draft, findings| draft.build(findings))
-    });
     match start {
         Some(Robot::Lattice(start)) => {
             let (configuration, matching) = read_goal(goal?, Some(&start), resolve, findings, lattice::build)?;

@@ -22,6 +22,7 @@ mod names;
 mod outcome;
 mod plan;
 mod robots;
+mod rofi;
 mod rotation;
 mod sequence;
 mod stl_and_obj;
@@ -34,6 +35,7 @@ use super::certificate_document::CertificateDocument;
 use super::diagnostics::Diagnostics;
 use super::document::{Checkable, NamedStructure, Problem, Resolve, SourceFile, Verifiable};
 use super::findings::Findings;
+use super::form::Form;
 use super::plan_document::PlanDocument;
 use crate::robot::linkage::Linkage;
 use crate::robot::{Catalogue, Configuration};
@@ -73,39 +75,45 @@ pub fn read_configuration(file: &SourceFile, resolve: Resolve<'_>) -> Result<Con
     findings.finish(value)
 }
 
-/// Reads a `configuration/1` file on its own, as a start, with modules of any kind. Lattice modules
-/// are taken as rigid modules with six ports.
+/// Reads a `configuration/1` file on its own, as a start, with modules of any kind, or a file of the RoFI
+/// platform. Lattice modules are taken as rigid modules with six ports.
 ///
 /// # Errors
 /// All problems of the file, and of the catalogue that it refers to, at once.
 pub fn read_linkage(file: &SourceFile, resolve: Resolve<'_>) -> Result<Linkage, Diagnostics> {
     let mut findings = Findings::default();
-    let document = findings.open(file);
-    let value =
-        document.as_ref().and_then(|document| read_start(&document.root(), resolve, &mut findings, linkage::build));
+    let document = findings.open_robot(file);
+    let value = document.as_ref().and_then(|document| match document.form {
+        Form::Own => read_start(&document.root(), resolve, &mut findings, linkage::build),
+        _ => rofi::parse(document, &mut findings).and_then(|world| rofi::start(&world, None, &mut findings)),
+    });
     findings.finish(value)
 }
 
-/// Reads a start and a goal, and checks them against each other.
+/// Reads a start and a goal, each a `configuration/1` file or one of the RoFI platform, and checks them
+/// against each other.
 ///
 /// # Errors
 /// All problems of both files, and of the catalogues that they refer to, at once.
 pub fn read_problem(start: &SourceFile, goal: &SourceFile, resolve: Resolve<'_>) -> Result<Problem, Diagnostics> {
     let mut findings = Findings::default();
-    let (start, goal) = (findings.open(start), findings.open(goal));
-    let (start, goal) = (start.as_ref().map(|s| s.root()), goal.as_ref().map(|g| g.root()));
-    let value = goal::read_problem(start.as_ref(), goal.as_ref(), resolve, &mut findings);
+    let (start, goal) = (findings.open_robot(start), findings.open_robot(goal));
+    let value = goal::read_documents(start.as_ref(), goal.as_ref(), resolve, &mut findings);
     findings.finish(value)
 }
 
-/// Reads a structure or a configuration, by what its `format` says.
+/// Reads a structure or a configuration, by what its `format` says, or a file of the RoFI platform.
 ///
 /// # Errors
 /// All problems of the file, and of the catalogue that it refers to, at once.
 pub fn read_checkable(file: &SourceFile, resolve: Resolve<'_>) -> Result<Checkable, Diagnostics> {
     let mut findings = Findings::default();
-    let document = findings.open(file);
+    let document = findings.open_robot(file);
     let value = document.as_ref().and_then(|document| {
+        if document.form != Form::Own {
+            let world = rofi::parse(document, &mut findings)?;
+            return rofi::start(&world, None, &mut findings).map(Checkable::Linkage);
+        }
         let root = document.root();
         match decode::format_of(&root, &["structure", "configuration"], &mut findings)? {
             "structure" => structure::read(&root, &mut findings).map(Checkable::Structure),

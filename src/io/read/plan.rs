@@ -14,7 +14,7 @@ use crate::reconfigure::{Objective, Outcome, Proof, Report, Statistics};
 
 pub(super) fn read(root: &Place<'_>, findings: &mut Findings) -> Option<PlanDocument> {
     let wire: wire::Plan = decode("plan", root, findings)?;
-    let problem = read_problem(Some(&root.key("start")), Some(&root.key("goal")), &no_references, findings)?;
+    let problem = read_problem(&root.key("start"), &root.key("goal"), &no_references, findings)?;
     let Problem::Lattice(problem) = problem else { return None };
     let ids = problem.start.modules.iter().map(|module| module.id.as_str()).collect();
     let modules = Names::new("modules", ids, |_| root.clone(), findings);

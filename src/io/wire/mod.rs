@@ -15,6 +15,7 @@ mod load_range;
 mod number;
 mod outcome;
 mod plan;
+mod rofi;
 mod structure;
 mod terrain;
 
@@ -40,5 +41,9 @@ pub(super) use load_range::{Failure, LoadRange, LoadRangeFormat, RangeEnd, Range
 pub(super) use number::{AngleRange, Bound, Limit, NonNegative, Positive, Real, reals};
 pub(super) use outcome::{Impossible, Outcome, StoppedBy, Which};
 pub(super) use plan::{Alternative, Bottleneck, Bracket, Objective, Plan, PlanFormat, Proof, Statistics};
+pub(super) use rofi::{
+    ComponentOf, CoordinateAxis, Direction, DockOf, IdentityTransform, ModuleJoint, NameOrNumber, PlacingJoint,
+    PlacingKind, RofiModule, RofiWorld, SpaceJoint, Transform, Voxel, VoxelWorld,
+};
 pub(super) use structure::{Body, Connection, Contact, Load, Structure, StructureFormat};
 pub(super) use terrain::{Mesh, Terrain};

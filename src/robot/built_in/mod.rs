@@ -4,11 +4,12 @@
 
 mod cube;
 mod freesn;
+pub mod rofi;
 
 use super::catalogue::Catalogue;
 
 /// Names of the built-in catalogues.
-pub const BUILT_IN: [&str; 2] = ["cube", "freesn"];
+pub const BUILT_IN: [&str; 3] = ["cube", "freesn", "rofi"];
 
 impl Catalogue {
     /// The built-in catalogue of this name, if there is one.
@@ -16,6 +17,7 @@ impl Catalogue {
         match name {
             "cube" => Some(Self::cube()),
             "freesn" => Some(Self::freesn()),
+            "rofi" => Some(Self::rofi()),
             _ => None,
         }
     }
