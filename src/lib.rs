@@ -25,6 +25,26 @@
 //! Every answer is a [bracket](statics::Bracket) whose two ends are evaluated from
 //! wrenches and twists on the original data, whatever a solver claims.
 //!
+//! # Questions beyond a verdict
+//!
+//! [`statics::load_range`] finds the interval of a force `lambda e` on a body that the structure
+//! withstands, each end one program and a bracket,
+//!
+//! ```text
+//! max lambda   subject to   balance under L + lambda e, friction cones, s_l <= u S_l;
+//! ```
+//!
+//! [`statics::failure_order`] the order in which connections would give way,
+//!
+//! ```text
+//! t_k = min max s_l / S_l over connections not yet critical, those critical at level j < k at t_j S_l;
+//! ```
+//!
+//! [`statics::contact_self_stress`] whether a structure that stands does so only by contacts that press
+//! on each other though no load makes them.
+//!
+//! # Plans
+//!
 //! A plan is a sequence of actions; its margin is the smallest margin over all its
 //! transient states. [`reconfigure::solve`] finds the plan with the largest margin,
 //! or the shortest one with enough of it, and says what it proved.
@@ -136,7 +156,8 @@
 //!
 //! Quasi-static only: no inertia, no impact, no vibration. Rigid bodies: among all
 //! balanced force distributions the oracle takes the best one, so contacts may be
-//! counted on for friction that a real sequence of loading would not raise. Moves
+//! counted on for friction that a real sequence of loading would not raise (see
+//! [`statics::contact_self_stress`]). Moves
 //! are checked on samples (at most 15 degrees or an eighth of a cell apart, refined
 //! around the worst), not between them. Only cubes in a lattice are planned for.
 

@@ -36,11 +36,11 @@ fn reports_fit_a_terminal_and_name_what_matters() {
 #[test]
 fn only_the_full_report_chooses_a_state() {
     let check = |more: &[&str]| stdout(&plan(&[&["check", "structures/suspension_76.json"], more].concat()));
-    let (plain, full) = (check(&["--top", "84"]), check(&["--top", "84", "--full"]));
+    let (plain, full) = (check(&["--top", "84"]), check(&["--top", "84", "--distribution"]));
     assert!(!plain.contains("least sum") && !plain.contains("at its limit"), "{plain}");
     assert!(full.contains("the least sum of strengths") && full.contains("0.299282"), "{full}");
     assert!(full.lines().all(|line| line.chars().count() <= 80), "{full}");
-    for (more, expected) in [(&["--json"][..], "proof"), (&["--json", "--full"], "least")] {
+    for (more, expected) in [(&["--json"][..], "proof"), (&["--json", "--distribution"], "least")] {
         let value: serde_json::Value = serde_json::from_str(&check(more)).unwrap();
         assert_eq!(value["distribution"], expected);
         let connections = value["connections"].as_array().unwrap();
@@ -51,7 +51,7 @@ fn only_the_full_report_chooses_a_state() {
 /// Nine equal magnets share a weight equally, and each of them at its limit is said to be.
 #[test]
 fn the_full_report_tells_critical_from_loaded() {
-    let report = stdout(&plan(&["check", "--full", "structures/hang_nine_parallel.json"]));
+    let report = stdout(&plan(&["check", "--distribution", "structures/hang_nine_parallel.json"]));
     let named = |row: &&str| row.contains("critical") || row.contains("at its limit");
     assert_eq!(report.lines().filter(named).count(), 9, "{report}");
 }
@@ -335,4 +335,111 @@ fn standard_input_is_a_file_too() {
         .unwrap();
     child.stdin.take().unwrap().write_all(&text).unwrap();
     assert_eq!(child.wait_with_output().unwrap().status.code(), Some(0));
+}
+
+/// A kilogram on a magnet of 100 N.
+#[test]
+fn the_range_of_a_force_is_told_with_what_fails() {
+    let range = |more: &[&str]| plan(&[&["load-range", "structures/hang_one.json", "--module", "a"], more].concat());
+    let report = range(&["--direction", "0,0,-1"]);
+    assert_eq!(report.status.code(), Some(0));
+    let text = stdout(&report);
+    assert!(text.starts_with("RANGE: a withstands any force to 90.1900 N"), "{text}");
+    assert!(text.contains("connections that break: c0"), "{text}");
+    let json = |more: &[&str]| -> serde_json::Value { serde_json::from_str(&stdout(&range(more))).unwrap() };
+    let value = json(&["--direction", "0,0,2", "--json", "--margin", "0.5"]);
+    assert_eq!((&value["format"], &value["outcome"]), (&"load-range/1".into(), &"range".into()));
+    assert_eq!((&value["highest"]["unlimited"], &value["stands_without"]), (&true.into(), &true.into()));
+    let lowest = &value["lowest"];
+    assert!((lowest["force_n"]["upper"].as_f64().unwrap() + 50.0 - 9.81).abs() < 1e-4, "{lowest}");
+    assert_eq!(lowest["fails"]["gives_way"]["connections"][0], "c0");
+    // Pulled sideways off the middle it turns, which the magnet resists less.
+    let beside = json(&["--direction", "-1,0,0", "--at", "0,0,-0.1", "--json"]);
+    let at_it = json(&["--direction", "-1,0,0", "--at", "0,0,0", "--json"]);
+    let most = |value: &serde_json::Value| value["highest"]["force_n"]["lower"].as_f64().unwrap();
+    assert!((most(&at_it) - 0.8 * (100.0 - 9.81)).abs() < 1e-4 && most(&beside) < 0.5 * most(&at_it));
+}
+
+#[test]
+fn a_point_of_a_module_is_given_in_its_own_frame() {
+    // The top of c, whose centre is 0.075 m above the ground and 0.05 m along x.
+    let arguments = ["--module", "c", "--direction", "0,0,-1", "--at", "0,0,0.025", "--json"];
+    let output = plan(&[&["load-range", "valid/configuration.json"], &arguments[..]].concat());
+    let value: serde_json::Value = serde_json::from_str(&stdout(&output)).unwrap();
+    let at: Vec<f64> = value["at_m"].as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect();
+    assert!((at[2] - 0.1).abs() < 1e-12, "{at:?}");
+    assert_eq!(value["body"], "c");
+}
+
+#[test]
+fn what_no_force_helps_is_a_no() {
+    let output = plan(&["load-range", "structures/cantilever_box_3.json", "--module", "a2", "--direction", "0,1,0"]);
+    assert_eq!(output.status.code(), Some(10));
+    let text = stdout(&output);
+    assert!(text.starts_with("NOWHERE") && text.contains("connections that break: "), "{text}");
+}
+
+#[test]
+fn forces_that_make_no_sense_are_refused() {
+    let range = |more: &[&str]| plan(&[&["load-range", "structures/hang_one.json"], more].concat());
+    for usage in [
+        &["--module", "a"][..],
+        &["--direction", "0,0,1"],
+        &["--module", "a", "--direction", "0,0"],
+        &["--module", "a", "--direction", "0,0,0"],
+        &["--module", "a", "--direction", "0,0,nan"],
+        &["--module", "a", "--direction", "0,0,1", "--at", "0,x,0"],
+        &["--module", "a", "--direction", "0,0,1", "--margin", "1"],
+    ] {
+        let output = range(usage);
+        assert_eq!(output.status.code(), Some(2), "{usage:?}");
+        assert!(output.stdout.is_empty());
+    }
+    let output = range(&["--module", "b", "--direction", "0,0,1"]);
+    assert_eq!(output.status.code(), Some(30));
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(said.contains("there is no module or body `b`; there are a"), "{said}");
+    let output = range(&["--module", "b", "--direction", "0,0,1", "--json"]);
+    let value: serde_json::Value = serde_json::from_str(&stdout(&output)).unwrap();
+    assert_eq!(value["format"], "errors/1");
+}
+
+#[test]
+fn the_order_of_failure_is_told_on_request() {
+    let check = |more: &[&str]| stdout(&plan(&[&["check", "structures/suspension_76.json"], more].concat()));
+    assert!(!check(&[]).contains("give way"));
+    let report = check(&["--order", "--top", "3"]);
+    assert!(report.contains("the order in which connections would give way"), "{report}");
+    assert!(report.contains("1. at 0.70071") && report.contains("3. at "), "{report}");
+    assert!(report.lines().all(|line| line.chars().count() <= 80), "{report}");
+    let value: serde_json::Value = serde_json::from_str(&check(&["--order", "--top", "2", "--json"])).unwrap();
+    let order = &value["order"];
+    let names = |list: &serde_json::Value| list.as_array().unwrap().len();
+    let listed: usize = order["levels"].as_array().unwrap().iter().map(|level| names(&level["connections"])).sum();
+    assert_eq!((names(&order["levels"]), listed + names(&order["idle"]) + names(&order["open"])), (2, 84));
+    assert_eq!(value["gives_way"]["contacts"], serde_json::json!([]));
+}
+
+#[test]
+fn what_gives_way_is_named() {
+    let report = stdout(&plan(&["check", "structures/incline_mu0.5_27.0.json"]));
+    assert!(report.contains("contacts that slide: "), "{report}");
+    let report = stdout(&plan(&["check", "structures/overhang_out.json"]));
+    assert!(report.contains("contacts that open: "), "{report}");
+    let report = stdout(&plan(&["check", "structures/cantilever_box_3.json"]));
+    assert!(report.contains("connections that break: "), "{report}");
+}
+
+#[test]
+fn a_verdict_that_rests_on_squeeze_says_so() {
+    for (name, relies) in [("squeeze_block", true), ("squeeze_h", true), ("wedge_v", false), ("hang_one", false)] {
+        let path = format!("structures/{name}.json");
+        let value: serde_json::Value = serde_json::from_str(&stdout(&plan(&["check", "--json", &path]))).unwrap();
+        assert_eq!((&value["verdict"], &value["relies_on_contact_self_stress"]), (&"stable".into(), &relies.into()));
+        let report = stdout(&plan(&["check", &path]));
+        assert_eq!(report.contains("nothing makes them"), relies, "{report}");
+    }
+    let output = stdout(&plan(&["check", "--json", "structures/overhang_out.json"]));
+    let value: serde_json::Value = serde_json::from_str(&output).unwrap();
+    assert!(value["relies_on_contact_self_stress"].is_null());
 }

@@ -8,7 +8,7 @@ use proptest::option;
 use proptest::prelude::*;
 use proptest::sample::{Index, select};
 use steadfast::io::{
-    AxisAngle, Contradiction, PlanDocument, Problem, SourceFile, no_references, read_configuration, read_plan,
+    AxisAngle, Contradiction, LatticeProblem, PlanDocument, SourceFile, no_references, read_configuration, read_plan,
     write_configuration, write_plan,
 };
 use steadfast::reconfigure::{
@@ -307,7 +307,7 @@ prop_compose! {
             (f64::INFINITY, 0)
         };
         PlanDocument {
-            problem: Problem { start, goal },
+            problem: LatticeProblem { start, goal },
             report: Report {
                 outcome,
                 objective: if by_moves { Objective::Moves } else { Objective::Margin },

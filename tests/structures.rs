@@ -3,7 +3,7 @@
 use libtest_mimic::{Arguments, Failed, Trial};
 use problems::StructureCase;
 use steadfast::io::{SourceFile, read_structure};
-use steadfast::statics::{Question, Verdict, assess};
+use steadfast::statics::{Question, Verdict, assess, contact_self_stress};
 
 fn main() {
     let manifest = problems::manifest().expect("the manifest is sound");
@@ -25,6 +25,12 @@ fn check(name: &str, case: &StructureCase) -> Result<(), Failed> {
     if verdict != case.verdict {
         let (found, why) = (answer.utilisation, answer.undecided_because);
         return Err(format!("expected {}, found {verdict}: {found:?} {why:?}", case.verdict).into());
+    }
+    if let Some(relies) = case.relies_on_contact_self_stress {
+        let found = contact_self_stress(&named.structure).map_err(|problems| format!("{problems:?}"))?;
+        if found.is_relied_on() != Some(relies) {
+            return Err(format!("whether it relies on self-stress of contacts: expected {relies}, {found:?}").into());
+        }
     }
     let Some(expected) = case.utilisation else { return Ok(()) };
     let (lower, upper) = (answer.utilisation.lower, answer.utilisation.upper);

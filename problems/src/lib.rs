@@ -80,6 +80,8 @@ pub struct StructureCase {
     pub utilisation: Option<f64>,
     /// Tolerance of the utilisation, relative to the larger of 1 and its magnitude.
     pub rtol: f64,
+    /// Whether it stands only by contacts that press on each other though nothing makes them, where that is known.
+    pub relies_on_contact_self_stress: Option<bool>,
     /// Where the answer comes from.
     pub source: String,
 }

@@ -274,7 +274,7 @@ proptest! {
         let of_mesh = mesh.contacts(&near, TOUCH);
         match contact(&near, &cuboid, TOUCH) {
             Some(of_box) => {
-                prop_assert_eq!(of_mesh.len(), 1, "{of_box:?}");
+                prop_assert_eq!(of_mesh.len(), 1, "{:?}", of_box);
                 let of_mesh = &of_mesh[0].1;
                 prop_assert!((of_mesh.normal - of_box.normal).norm() < 1e-4);
                 prop_assert!(same_points(&of_mesh.points, &of_box.points, 1e-4), "{of_mesh:?} {of_box:?}");

@@ -16,6 +16,7 @@ mod environment;
 mod figure;
 #[cfg(test)]
 mod laws;
+mod linkage;
 mod motion;
 mod polygon;
 mod separation;
@@ -31,6 +32,7 @@ mod tolerances;
 pub use broad_phase::BroadPhase;
 pub use contact::{ContactPatch, contact};
 pub use environment::environment_problems;
+pub use linkage::linkage_problems;
 pub use motion::Motion;
 pub use separation::{overlap, penetration};
 pub use solid::Solid;

@@ -9,17 +9,31 @@ use serde_json::Value;
 use super::{layout, wire};
 
 /// The formats that have a schema.
-const NAMES: [&str; 7] = ["structure", "catalogue", "configuration", "plan", "check", "certificate", "errors"];
+const NAMES: [&str; 10] = [
+    "structure",
+    "catalogue",
+    "configuration",
+    "plan",
+    "check",
+    "load-range",
+    "certificate",
+    "errors",
+    "rofi-world",
+    "rofi-voxels",
+];
 
-static SCHEMAS: LazyLock<[Value; 7]> = LazyLock::new(|| {
+static SCHEMAS: LazyLock<[Value; 10]> = LazyLock::new(|| {
     [
         generate::<wire::Structure>(),
         generate::<wire::Catalogue>(),
         generate::<wire::Configuration>(),
         generate::<wire::Plan>(),
         generate::<wire::Check>(),
+        generate::<wire::LoadRange>(),
         generate::<wire::Certificate>(),
         generate::<wire::Errors>(),
+        generate::<wire::RofiWorld>(),
+        generate::<wire::VoxelWorld>(),
     ]
 });
 

@@ -23,7 +23,7 @@ mod terrain;
 #[cfg(test)]
 mod tests;
 
-pub use built_in::BUILT_IN;
+pub use built_in::{BUILT_IN, rofi};
 pub use catalogue::Catalogue;
 pub use configuration::{Configuration, FaceConnection, Goal, Matching, Module, ModuleLoad, Port, Requirement};
 pub use environment::{Environment, Ground, Obstacle};

@@ -39,7 +39,8 @@ const LOOSE_CONTACT: f64 = 1e-14;
 /// Wrench of every link of the block in its frame, as the solver's variables give it.
 pub(super) fn wrenches(program: &Program, iterate: &Iterate) -> Vec<Wrench> {
     let t = iterate.t * program.t_scale;
-    let mut field: Vec<Wrench> = program.preload_local.iter().map(|local| *local * t).collect();
+    let preloads = program.preload_local.iter().zip(&program.held_local);
+    let mut field: Vec<Wrench> = preloads.map(|(local, held)| *local * t + *held).collect();
     for group in &program.groups {
         let mut local = [0.0; 6];
         group.add_wrench(group.part(&iterate.z), &mut local);

@@ -58,6 +58,11 @@ impl Clusters {
         self.count
     }
 
+    /// The cluster of one of the block's bodies; `None` where the root holds it.
+    pub(super) fn of_body(&self, block: &Block, body: usize) -> Option<usize> {
+        self.cluster(block, Vertex::Body(body))
+    }
+
     fn cluster(&self, block: &Block, vertex: Vertex) -> Option<usize> {
         match vertex {
             Vertex::Body(i) if vertex != block.root => {

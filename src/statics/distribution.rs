@@ -347,7 +347,7 @@ impl<'p> Least<'p> {
 }
 
 /// Columns of `(row, entry)` as a matrix.
-fn compressed(height: usize, columns: Vec<Vec<(usize, f64)>>) -> CscMatrix<f64> {
+pub(super) fn compressed(height: usize, columns: Vec<Vec<(usize, f64)>>) -> CscMatrix<f64> {
     let width = columns.len();
     let mut starts = Vec::with_capacity(width + 1);
     let (mut rows, mut values) = (Vec::new(), Vec::new());

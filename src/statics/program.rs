@@ -124,6 +124,8 @@ pub(super) struct Program {
     pub preload: Vec<f64>,
     /// Wrench in each link's frame that t = 1 stands for (minus the preload).
     pub preload_local: Vec<Wrench>,
+    /// The same of what links hold whatever t is.
+    pub held_local: Vec<Wrench>,
     /// Scaled load per row (right-hand side is its negative).
     pub load: Vec<f64>,
     /// Row factors: scaled row = factor times row in N or N m.
@@ -140,6 +142,8 @@ pub(super) struct Program {
     pub in_series: Vec<bool>,
     /// Share of its strength that each link may use.
     shares: Vec<f64>,
+    /// Whether that is so whatever t is.
+    held: Vec<bool>,
 }
 
 /// Smallest force scale of a body, relative to the largest: a body without weight
@@ -167,6 +171,15 @@ impl Program {
     /// proves possible is possible.
     pub(super) fn with_shares(structure: &Structure, block: &Block, loads: &[BodyLoad], shares: Vec<f64>) -> Self {
         Self { shares, ..Self::unstated(structure, block, loads, FLOOR) }.stated(structure, block)
+    }
+
+    /// The program of the least utilisation of all connections but those that are held at a
+    /// utilisation. Its rows of ties have a right-hand side: only the general solver takes it.
+    pub(super) fn with_held(structure: &Structure, block: &Block, loads: &[BodyLoad], levels: &[Option<f64>]) -> Self {
+        let unstated = Self::unstated(structure, block, loads, FLOOR);
+        let held = levels.iter().map(Option::is_some).collect();
+        let shares = levels.iter().map(|level| level.unwrap_or(1.0)).collect();
+        Self { held, shares, ..unstated }.stated(structure, block)
     }
 
     /// The program of the largest factor on `loads` that the block stands beside `base` with
@@ -218,7 +231,7 @@ impl Program {
                 frame.sides().map(|(side, sign)| {
                     let i = local_body(block, side)?;
                     let com = &structure.bodies[block.bodies[i]].com;
-                    Some(Side::new(frame, i, sign, com, &row_factor[6 * i..6 * i + 6]))
+                    Some(Side::new(frame, i, sign, com, [row_factor[6 * i], row_factor[6 * i + 3]]))
                 })
             })
             .collect();
@@ -237,6 +250,7 @@ impl Program {
             sides,
             preload: vec![0.0; load.len()],
             preload_local: vec![Wrench::ZERO; block.links.len()],
+            held_local: vec![Wrench::ZERO; block.links.len()],
             load,
             row_factor,
             t_scale: 1.0,
@@ -245,6 +259,7 @@ impl Program {
             coms: block.bodies.iter().map(|&body| structure.bodies[body].com).collect(),
             in_series,
             shares: vec![1.0; block.links.len()],
+            held: vec![false; block.links.len()],
         }
     }
 
@@ -360,9 +375,11 @@ impl Program {
     /// Adds the row `p + q = t width` that ties a box component's two slacks.
     fn tie(&mut self, link: usize, slack: usize, scale: f64, width: f64) {
         let row = self.rows();
-        self.load.push(0.0);
+        let width = -width / scale;
+        let (fixed, growing) = if self.held[link] { (width, 0.0) } else { (0.0, width * self.t_scale) };
+        self.load.push(fixed);
         self.row_factor.push(1.0 / scale);
-        self.preload.push(-width / scale * self.t_scale);
+        self.preload.push(growing);
         let one = self.groups.last_mut().expect("the slack that is tied");
         one.tie_row = Some(row);
         let other = self.add_group(link, Cone::NonNegative, Form::Slack, 1, scale);
@@ -395,6 +412,13 @@ impl Program {
             return;
         }
         match self.purpose {
+            Purpose::Utilisation if self.held[link] => {
+                let Wrench { force: f, torque: m } = local;
+                for side in self.sides[link].iter().flatten() {
+                    side.push(&[f.x, f.y, f.z, m.x, m.y, m.z], &mut self.load);
+                }
+                self.held_local[link] = local;
+            }
             Purpose::Utilisation => {
                 let Wrench { force: f, torque: m } = local * self.t_scale;
                 for side in self.sides[link].iter().flatten() {

@@ -93,6 +93,12 @@ pub enum Command {
     Verify(VerifyArguments),
     /// Say whether a structure or a configuration is stable, and by what margin
     Check(CheckArguments),
+    /// Find the range of a force at a module that a structure or a configuration withstands, and what fails
+    /// at its ends
+    #[command(after_help = RANGE_EXIT_CODES)]
+    LoadRange(LoadRangeArguments),
+    /// Write a robot in another format: a configuration/1 file, or one of the RoFI platform's
+    Convert(ConvertArguments),
     /// Print the JSON Schema of a format, or the names of all formats
     Schema(SchemaArguments),
 }
@@ -113,16 +119,99 @@ pub struct CheckArguments {
     /// Of all states at the same utilisation show the one with the least sum of forces, and
     /// which connections are at their limit
     #[arg(long)]
-    pub full: bool,
-    /// How many of the most loaded connections to show
+    pub distribution: bool,
+    /// Say in which order connections would give way: what the most loaded need at least,
+    /// then the most loaded of the others, and so on
+    #[arg(long)]
+    pub order: bool,
+    /// How many of the most loaded connections, and levels of the order, to show
     #[arg(long, value_name = "N", default_value_t = 10)]
     pub top: usize,
+}
+
+const RANGE_EXIT_CODES: &str = "Exit codes: 0 both ends known; 2 usage; 10 proved that no force along the line is \
+enough; 11 not decided, or an end known only roughly; 30 bad input; 101 a bug";
+
+#[derive(Debug, Args)]
+pub struct LoadRangeArguments {
+    /// A structure/1 or configuration/1 file; `-` reads standard input
+    pub file: PathBuf,
+    /// The module, or the body of a structure, that the force acts on
+    #[arg(long, value_name = "ID", visible_alias = "body")]
+    pub module: String,
+    /// The force's direction in the world frame; its length does not matter
+    #[arg(long, value_name = "X,Y,Z", value_parser = direction, allow_hyphen_values = true)]
+    pub direction: [f64; 3],
+    /// The force's point of action in m: in the module's frame for a configuration, in the world frame for a
+    /// structure [default: the centre of mass]
+    #[arg(long, value_name = "X,Y,Z", value_parser = triple, allow_hyphen_values = true)]
+    pub at: Option<[f64; 3]>,
+    /// Margin that is to be left at the ends of the range
+    #[arg(long, value_name = "M", default_value_t = 0.0, value_parser = margin_to_leave)]
+    pub margin: f64,
+    /// Print a load-range/1 document (and errors as an errors/1 document)
+    #[arg(long)]
+    pub json: bool,
+}
+
+fn triple(text: &str) -> Result<[f64; 3], String> {
+    let numbers: Vec<f64> = text
+        .split(',')
+        .map(|part| part.trim().parse::<f64>().map_err(|error| format!("`{part}`: {error}")))
+        .collect::<Result<_, _>>()?;
+    match <[f64; 3]>::try_from(numbers) {
+        Ok(numbers) if numbers.iter().all(|x| x.is_finite()) => Ok(numbers),
+        Ok(_) => Err("every number must be finite".to_string()),
+        Err(numbers) => Err(format!("three numbers with commas between are needed, not {}", numbers.len())),
+    }
+}
+
+fn direction(text: &str) -> Result<[f64; 3], String> {
+    let numbers = triple(text)?;
+    let length = numbers.iter().map(|x| x * x).sum::<f64>().sqrt();
+    if length.is_normal() { Ok(numbers) } else { Err("a direction must have a length".to_string()) }
+}
+
+fn margin_to_leave(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() && value < 1.0 => Ok(value),
+        Ok(_) => Err("less than 1 can be left, which only an unloaded robot has".to_string()),
+        Err(error) => Err(error.to_string()),
+    }
 }
 
 #[derive(Debug, Args)]
 pub struct VerifyArguments {
     /// A plan/1 or certificate/1 file; `-` reads standard input
     pub file: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub struct ConvertArguments {
+    /// A configuration/1 file, or a JSON world, text or voxels of the RoFI platform; `-` reads standard input
+    pub input: PathBuf,
+    /// File to write [default: standard output]
+    #[arg(required_unless_present = "to")]
+    pub output: Option<PathBuf>,
+    /// Format to write [default: rofi-text for .rofi and .in, otherwise configuration]
+    #[arg(long, value_enum, value_name = "FORMAT")]
+    pub to: Option<RobotFormat>,
+    /// Leave out what surrounds the robot: gravity, ground, obstacles, loads, and that modules are fixed
+    #[arg(long)]
+    pub robot_only: bool,
+}
+
+/// `--to`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum RobotFormat {
+    /// This program's own format, configuration/1
+    Configuration,
+    /// A JSON world of the RoFI platform
+    RofiJson,
+    /// Text of the RoFI platform
+    RofiText,
+    /// Voxels of the RoFI platform
+    RofiVoxel,
 }
 
 #[derive(Debug, Args)]

@@ -7,12 +7,19 @@ use std::time::Instant;
 use std::{fs, io};
 
 use steadfast::certificate::issue;
-use steadfast::io::{CertificateDocument, Checkable, NamedStructure, read_checkable, write_certificate, write_check};
-use steadfast::statics::{Assessment, Bracket, Distribution, Question, Reductions, Verdict, assess, explain};
+use steadfast::io::{
+    CertificateDocument, CheckReport, Checkable, NamedStructure, read_checkable, write_certificate, write_check,
+};
+use steadfast::statics::{
+    Assessment, Bracket, Distribution, Question, Reductions, SelfStress, Verdict, assess, contact_self_stress, explain,
+    failure_order,
+};
 
 use crate::arguments::CheckArguments;
 use crate::exit::Exit;
 use crate::explain::explained;
+use crate::gives_way::gives_way;
+use crate::order::order;
 use crate::table::table;
 use crate::{files, output};
 
@@ -25,10 +32,11 @@ pub fn run(arguments: &CheckArguments) -> io::Result<Exit> {
     let named = match read_checkable(&file, &files::resolve) {
         Ok(Checkable::Structure(named)) => named,
         Ok(Checkable::Configuration(configuration)) => NamedStructure::of_configuration(&configuration),
+        Ok(Checkable::Linkage(linkage)) => NamedStructure::of_linkage(&linkage),
         Err(diagnostics) => return output::bad_input(&diagnostics, arguments.json),
     };
     let clock = Instant::now();
-    let question = if arguments.full { Question::Full } else { Question::VALUE };
+    let question = if arguments.distribution { Question::Full } else { Question::VALUE };
     let answer = match assess(&named.structure, question) {
         Ok(answer) => answer,
         Err(problems) => {
@@ -39,17 +47,23 @@ pub fn run(arguments: &CheckArguments) -> io::Result<Exit> {
     let seconds = clock.elapsed().as_secs_f64();
     // A structure that was assessed is sound.
     let explanation = arguments.explain.then(|| explain(&named.structure, Reductions::ALL).ok()).flatten();
+    let stable = answer.verdict == Verdict::Stable;
+    let self_stress = stable.then(|| contact_self_stress(&named.structure).ok()).flatten();
+    let levels = arguments.order.then(|| failure_order(&named.structure, arguments.top).ok().flatten()).flatten();
+    let report = CheckReport {
+        assessment: &answer,
+        explanation: explanation.as_ref(),
+        self_stress,
+        order: levels.as_ref(),
+        seconds,
+    };
     if arguments.json {
-        match write_check(&named, &answer, explanation.as_ref(), seconds) {
+        match write_check(&named, &report) {
             Ok(text) => output::result(&text)?,
             Err(problem) => return output::refused(&file.name, [problem.to_string()], true),
         }
     } else {
-        let mut text = report(&named, &answer, arguments.top, seconds);
-        if let Some(explanation) = &explanation {
-            text.push_str(&explained(&named, explanation));
-        }
-        output::result(&text)?;
+        output::result(&told(&named, &report, arguments.top))?;
     }
     if let Some(out) = &arguments.certificate
         && let Err(trouble) = certify(&named, &answer, out)
@@ -71,16 +85,40 @@ fn certify(named: &NamedStructure, answer: &Assessment, out: &Path) -> Result<()
     Ok(())
 }
 
-fn report(named: &NamedStructure, answer: &Assessment, top: usize, seconds: f64) -> String {
+fn told(named: &NamedStructure, report: &CheckReport<'_>, top: usize) -> String {
+    let answer = report.assessment;
     let mut text = verdict(answer);
+    text.push_str(clamped(report.self_stress));
+    if answer.verdict != Verdict::Stable {
+        text.push_str(&gives_way(named, answer));
+    }
     if answer.verdict != Verdict::WholeBodyUnstable {
         let _ = writeln!(text, "margin       {}", shown(answer.margin()));
         let _ = writeln!(text, "utilisation  {}", shown(answer.utilisation));
         strengths(&mut text, named, answer);
         loaded(&mut text, named, answer, top);
     }
-    left_out(&mut text, named, answer, seconds);
+    if let Some(levels) = report.order {
+        text.push_str(&order(named, levels));
+    }
+    left_out(&mut text, named, answer, report.seconds);
+    if let Some(explanation) = report.explanation {
+        text.push_str(&explained(named, explanation, answer.distribution == Distribution::Proof));
+    }
     text
+}
+
+/// What a verdict of equilibrium is worth where contacts could clamp.
+fn clamped(self_stress: Option<SelfStress>) -> &'static str {
+    match self_stress {
+        Some(SelfStress::ReliedOn) => {
+            "but only by contacts that press on each other though nothing makes them:\nwithout a real squeeze it slips\n"
+        }
+        Some(SelfStress::Undecided) => {
+            "contacts could press on each other without a load; whether it relies on that\nwas not found out\n"
+        }
+        Some(SelfStress::Impossible | SelfStress::NotNeeded) | None => "",
+    }
 }
 
 fn verdict(answer: &Assessment) -> String {

@@ -11,10 +11,11 @@ const WIDTH: usize = 79;
 /// Most blocks that are listed one by one.
 const LISTED: usize = 10;
 
-/// A paragraph for every reduction, and a table of what remained.
-pub fn explained(named: &NamedStructure, explanation: &Explanation) -> String {
+/// A paragraph for every reduction, and a table of what remained. `margin_only` says that no
+/// distribution of stress was asked for.
+pub fn explained(named: &NamedStructure, explanation: &Explanation, margin_only: bool) -> String {
     let mut text = "\nleft out of the optimisation\n".to_owned();
-    for item in left_out(named, explanation) {
+    for item in left_out(named, explanation, margin_only) {
         text.push_str(&wrapped(&item));
     }
     text.push_str("\nwhat remained\n");
@@ -60,91 +61,106 @@ fn solved_in_space(named: &NamedStructure, blocks: &[Remaining]) -> String {
     }
 }
 
-fn left_out(named: &NamedStructure, explanation: &Explanation) -> Vec<String> {
-    let structure = &named.structure;
+fn left_out(named: &NamedStructure, explanation: &Explanation, margin_only: bool) -> Vec<String> {
+    let reduced = bodies(explanation).into_iter().chain(blocks(explanation));
+    let mut items: Vec<String> = reduced.filter(|(found, _)| *found > 0).map(|(_, item)| item).collect();
+    items.extend(cones(named, explanation));
+    if margin_only {
+        items.push("a secondary objective and the distribution of stress: only the margin was asked for".to_owned());
+    }
+    items
+}
+
+/// What bodies and links need no equation or no unknown, with how many of them there are.
+fn bodies(explanation: &Explanation) -> [(usize, String); 4] {
+    let Explanation { fixed_bodies, merged_bodies, idle_links, .. } = *explanation;
+    let (connections, contacts) = (explanation.closed_form_connections, explanation.closed_form_contacts);
+    let held_by = some_connections(explanation.unlimited_connections);
+    let fixed = count(fixed_bodies, "fixed body", "fixed bodies");
+    let merged = some_bodies(merged_bodies);
+    let idle = count(idle_links, "link", "links");
+    let closed = format!("{} and {}", some_connections(connections), count(contacts, "contact", "contacts"));
+    [
+        (fixed_bodies, fixed + ": immovable, so their balance is no equation"),
+        (
+            merged_bodies,
+            format!(
+                "{merged} moving with others: {held_by} without any finite limit hold them; what those carry follows from balance afterwards"
+            ),
+        ),
+        (idle_links, idle + " between things that cannot move against each other: need carry nothing"),
+        (
+            connections + contacts,
+            closed + " in closed form: each is all that holds what hangs behind it, so its wrench follows from balance",
+        ),
+    ]
+}
+
+/// What makes blocks smaller, with how often it does.
+fn blocks(explanation: &Explanation) -> [(usize, String); 4] {
     let blocks = &explanation.remaining;
     let sum = |of: fn(&Remaining) -> usize| blocks.iter().map(of).sum::<usize>();
-    let mut items = Vec::new();
-    let mut tell = |count: usize, item: String| {
-        if count > 0 {
-            items.push(item);
-        }
-    };
-    let Explanation { fixed_bodies, merged_bodies, unlimited_connections, idle_links, unloaded_blocks, .. } =
-        *explanation;
-    tell(
-        fixed_bodies,
-        format!("{}: immovable, so their balance is no equation", count(fixed_bodies, "fixed body", "fixed bodies")),
-    );
-    tell(
-        merged_bodies,
-        format!(
-            "{} moving with others: {} without any finite limit hold them; what those carry follows from balance afterwards",
-            count(merged_bodies, "body", "bodies"),
-            count(unlimited_connections, "connection", "connections"),
-        ),
-    );
-    tell(
-        idle_links,
-        format!(
-            "{} between things that cannot move against each other: need carry nothing",
-            count(idle_links, "link", "links")
-        ),
-    );
-    let closed = explanation.closed_form_connections + explanation.closed_form_contacts;
-    tell(
-        closed,
-        format!(
-            "{} and {} in closed form: each is all that holds what hangs behind it, so its wrench follows from balance",
-            count(explanation.closed_form_connections, "connection", "connections"),
-            count(explanation.closed_form_contacts, "contact", "contacts"),
-        ),
-    );
-    tell(
-        usize::from(blocks.len() > 1),
-        format!(
-            "{} blocks that meet in single bodies or at the ground: solved one by one, each only until it is proved to need no more than another",
-            blocks.len()
-        ),
-    );
-    tell(unloaded_blocks, format!("{} without any load: nothing to hold", count(unloaded_blocks, "block", "blocks")));
     let (chains, within) = (sum(|block| block.chains), sum(|block| block.bodies_in_chains));
-    tell(
-        chains,
-        format!(
-            "{} within {}: a body with two connections passes its wrench on, so each chain has one unknown wrench",
-            count(within, "body", "bodies"),
-            count(chains, "chain", "chains"),
-        ),
-    );
     let planar = sum(|block| usize::from(block.is_planar()));
-    tell(
-        planar,
-        format!(
-            "{} in a plane ({}): no force across it and no torque within it, so three equations a body; points in mirrored pairs are one, and a point's friction cone is two inequalities",
-            count(planar, "block lies", "blocks lie"),
-            count(sum(|block| if block.is_planar() { block.bodies } else { 0 }), "body", "bodies"),
+    let in_planes = some_bodies(sum(|block| if block.is_planar() { block.bodies } else { 0 }));
+    let lie = count(planar, "block lies", "blocks lie");
+    let unloaded = count(explanation.unloaded_blocks, "block", "blocks");
+    [
+        (
+            usize::from(blocks.len() > 1),
+            format!(
+                "{} blocks that meet in single bodies or at the ground: solved one by one, each only until it is proved to need no more than another",
+                blocks.len()
+            ),
         ),
-    );
-    if !blocks.is_empty() {
-        if sum(|block| block.friction_cones) == 0 {
-            let why = match structure.contacts.iter().any(|contact| contact.friction > 0.0) {
-                _ if structure.contacts.is_empty() => "there is no contact",
-                true => "none with friction is left in what is solved, or only in planes",
-                false => "no contact has friction",
-            };
-            items.push(format!("friction cones of contacts: {why}"));
-        }
-        if explanation.is_linear() {
-            items.push(
-                "second-order cones: boxes, no friction or friction in planes are left, a linear program".to_owned(),
-            );
-        } else if sum(|block| block.inequalities) == 0 {
-            items.push("linear inequalities: no box and no frictionless point is left".to_owned());
-        }
+        (explanation.unloaded_blocks, unloaded + " without any load: nothing to hold"),
+        (
+            chains,
+            format!(
+                "{} within {}: a body with two connections passes its wrench on, so each chain has one unknown wrench",
+                some_bodies(within),
+                count(chains, "chain", "chains")
+            ),
+        ),
+        (
+            planar,
+            format!(
+                "{lie} in a plane ({in_planes}): no force across it and no torque within it, so three equations a body; points in mirrored pairs are one, and a point's friction cone is two inequalities"
+            ),
+        ),
+    ]
+}
+
+/// Which kinds of cone do not occur, and why.
+fn cones(named: &NamedStructure, explanation: &Explanation) -> Vec<String> {
+    let (structure, blocks) = (&named.structure, &explanation.remaining);
+    let mut items = Vec::new();
+    if blocks.is_empty() {
+        return items;
     }
-    items.push("a secondary objective and the distribution of stress: only the margin was asked for".to_owned());
+    if blocks.iter().all(|block| block.friction_cones == 0) {
+        let why = match structure.contacts.iter().any(|contact| contact.friction > 0.0) {
+            _ if structure.contacts.is_empty() => "there is no contact",
+            true => "none with friction is left in what is solved, or only in planes",
+            false => "no contact has friction",
+        };
+        items.push(format!("friction cones of contacts: {why}"));
+    }
+    if explanation.is_linear() {
+        items
+            .push("second-order cones: boxes, no friction or friction in planes are left, a linear program".to_owned());
+    } else if blocks.iter().all(|block| block.inequalities == 0) {
+        items.push("linear inequalities: no box and no frictionless point is left".to_owned());
+    }
     items
+}
+
+fn some_bodies(number: usize) -> String {
+    count(number, "body", "bodies")
+}
+
+fn some_connections(number: usize) -> String {
+    count(number, "connection", "connections")
 }
 
 fn count(number: usize, one: &str, several: &str) -> String {
@@ -152,7 +168,7 @@ fn count(number: usize, one: &str, several: &str) -> String {
 }
 
 /// An item of a list, broken into lines.
-fn wrapped(item: &str) -> String {
+pub fn wrapped(item: &str) -> String {
     let (mut text, mut line) = (String::new(), "  -".to_owned());
     for word in item.split(' ') {
         if line.chars().count() + 1 + word.chars().count() > WIDTH {

@@ -5,10 +5,14 @@
 
 mod arguments;
 mod check;
+mod convert;
 mod exit;
 mod explain;
 mod files;
+mod gives_way;
+mod load_range;
 mod naming;
+mod order;
 mod output;
 mod progress;
 mod schema;
@@ -30,6 +34,8 @@ fn main() -> ExitCode {
     let exit = match (arguments.command, arguments.planning) {
         (Some(Command::Verify(verify)), _) => verify::run(&verify),
         (Some(Command::Check(check)), _) => check::run(&check),
+        (Some(Command::LoadRange(range)), _) => load_range::run(&range),
+        (Some(Command::Convert(convert)), _) => convert::run(&convert),
         (Some(Command::Schema(schema)), _) => schema::run(&schema),
         (None, Some(planning)) => search::run(&planning),
         (None, None) => {

@@ -4,6 +4,7 @@ use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::gives_way::GivesWay;
 use super::number::Real;
 use super::plan::Bracket;
 
@@ -38,6 +39,15 @@ pub(crate) struct Check {
     pub(crate) connections: Vec<CheckedConnection>,
     /// The contacts in that state; empty when whole-body-unstable.
     pub(crate) contacts: Vec<CheckedContact>,
+    /// What would move if it gave way: the mechanism that proves the utilisation from below, or the motion
+    /// that no strength prevents.
+    pub(crate) gives_way: GivesWay,
+    /// Whether it stands only by contacts that press on each other though nothing makes them; null when it is
+    /// not stable, or when that was not found out.
+    pub(crate) relies_on_contact_self_stress: Option<bool>,
+    /// The order in which connections would give way; with `--order`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) order: Option<Order>,
     /// What needed no optimisation.
     pub(crate) left_out: LeftOut,
     /// The same in detail, and what remained; with `--explain`.
@@ -109,6 +119,28 @@ pub(crate) struct CheckedContact {
     pub(crate) id: String,
     /// Force on its `body`, in the world frame.
     pub(crate) force_n: [Real; 3],
+}
+
+/// The order in which connections would give way.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Order {
+    /// The most loaded first, each once those before it have what they need.
+    pub(crate) levels: Vec<Level>,
+    /// Connections that nothing has to flow through then.
+    pub(crate) idle: Vec<String>,
+    /// Connections whose level was not asked for, or could not be proved.
+    pub(crate) open: Vec<String>,
+}
+
+/// Connections that would give way together.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Level {
+    /// What they need at least.
+    pub(crate) utilisation: Bracket,
+    /// Their names.
+    pub(crate) connections: Vec<String>,
 }
 
 /// What needed no optimisation.

@@ -108,11 +108,12 @@ pub(crate) struct Module {
     /// Name of its type in the catalogue.
     #[serde(rename = "type")]
     pub(crate) module_type: String,
-    /// Cell of a lattice module: it fills [x, x+1] x [y, y+1] x [z, z+1] times the pitch.
+    /// Cell of a lattice module, which places it: it fills [x, x+1] x [y, y+1] x [z, z+1] times the pitch.
     #[schemars(inner(range(min = -1_000_000, max = 1_000_000)))]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) cell: Option<[i32; 3]>,
-    /// Position of its first body, for modules outside the lattice.
+    /// Position of its first body's frame, for modules outside lattices. A module that connections
+    /// join to others which have a place needs none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) position_m: Option<[Real; 3]>,
     /// Orientation, a unit quaternion; of a lattice module one of the 24 rotations of a cube.
@@ -154,16 +155,27 @@ pub(crate) enum PairConnection {
     Rolled(RolledConnection),
 }
 
-/// Two ports that are connected at an angle.
+/// Two ports that are connected, and how one engages with the other. That places a module
+/// which has no place of its own; of modules that have one it is checked.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct RolledConnection {
     /// The two ports.
     pub(crate) ports: [String; 2],
-    /// Angle about the ports' axis, a multiple of 90 for faces. Of lattice
-    /// modules the placements alone decide at which of the four they engage.
+    /// Angle by which the one port's x axis is turned from the other's about the axis that they
+    /// share, by default 0; a multiple of 90 for faces. Of lattice modules the placements alone
+    /// decide at which of the four they engage.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) roll_deg: Option<Real>,
+    /// Of a port on a surface: the direction from the ball's centre to it, of any length, in the
+    /// frame of the ball's body (of a module of one body the module's).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) direction: Option<[Real; 3]>,
+    /// Of a port on a surface: the angle by which its x axis is turned about the direction outwards,
+    /// by default 0. At 0 it looks towards growing angles from the ball's z axis (south, were z north);
+    /// at the poles along the ball's x axis, or against it below.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) spin_deg: Option<Real>,
 }
 
 /// An external wrench that stays on a module wherever it goes.

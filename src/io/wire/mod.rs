@@ -10,20 +10,25 @@ mod check;
 mod configuration;
 mod connector;
 mod errors;
+mod gives_way;
+mod load_range;
 mod number;
 mod outcome;
 mod plan;
+mod rofi;
 mod structure;
 mod terrain;
 
 pub(super) use action::{Action, Axis, CellTarget};
-pub(super) use catalogue::{BodyType, Catalogue, CatalogueFormat, Faces, ModuleType, Motion, Ports, Shape};
+pub(super) use catalogue::{
+    BodyType, Catalogue, CatalogueFormat, Faces, Joint, ModuleType, Motion, PortType, Ports, Shape,
+};
 pub(super) use certificate::{
     Carried, CarriedPoints, CarriedWrench, Certificate, CertificateFormat, Mechanism, Stress, Twist,
 };
 pub(super) use check::{
-    Check, CheckFormat, CheckedConnection, CheckedContact, Distribution, Explanation, LeftOut, RemainingBlock, Verdict,
-    Wrench,
+    Check, CheckFormat, CheckedConnection, CheckedContact, Distribution, Explanation, LeftOut, Level, Order,
+    RemainingBlock, Verdict, Wrench,
 };
 pub(super) use configuration::{
     CatalogueRef, Configuration, ConfigurationFormat, Connections, Environment, FrameMatch, Ground, Match, Module,
@@ -31,8 +36,14 @@ pub(super) use configuration::{
 };
 pub(super) use connector::Connector;
 pub(super) use errors::{Errors, ErrorsFormat, FileError};
-pub(super) use number::{Bound, Limit, NonNegative, Positive, Real, reals};
+pub(super) use gives_way::{ContactMotion, GivesWay, MovingContact};
+pub(super) use load_range::{Failure, LoadRange, LoadRangeFormat, RangeEnd, RangeOutcome};
+pub(super) use number::{AngleRange, Bound, Limit, NonNegative, Positive, Real, reals};
 pub(super) use outcome::{Impossible, Outcome, StoppedBy, Which};
 pub(super) use plan::{Alternative, Bottleneck, Bracket, Objective, Plan, PlanFormat, Proof, Statistics};
+pub(super) use rofi::{
+    ComponentOf, CoordinateAxis, Direction, DockOf, IdentityTransform, ModuleJoint, NameOrNumber, PlacingJoint,
+    PlacingKind, RofiModule, RofiWorld, SpaceJoint, Transform, Voxel, VoxelWorld,
+};
 pub(super) use structure::{Body, Connection, Contact, Load, Structure, StructureFormat};
 pub(super) use terrain::{Mesh, Terrain};

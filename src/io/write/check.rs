@@ -1,21 +1,27 @@
 //! An assessment to `check/1`.
 
+use super::super::check_report::CheckReport;
 use super::super::document::NamedStructure;
 use super::super::wire::{self, Real};
-use super::{bracket, vector};
-use crate::statics::{Assessment, ConnectionState, Distribution, Explanation, InSpace, Remaining, Verdict};
+use super::{bracket, gives_way, vector};
+use crate::statics::{
+    ConnectionState, Distribution, Explanation, FailureLevel, FailureOrder, InSpace, Remaining, SelfStress, Verdict,
+};
 
 /// What a margin is found without.
 const NOT_ASKED_FOR: [&str; 2] = ["secondary objective", "distribution of stress"];
 
-pub(super) fn wire(
-    named: &NamedStructure,
-    assessment: &Assessment,
-    explanation: Option<&Explanation>,
-    seconds: f64,
-) -> wire::Check {
+/// A wire type that takes counts of the same names from a core type, and other fields beside.
+macro_rules! counted {
+    ($wire:ident, $from:expr, [$($count:ident),* $(,)?] $(, $field:ident: $value:expr)* $(,)?) => {
+        wire::$wire { $($count: $from.$count as u64,)* $($field: $value),* }
+    };
+}
+
+pub(super) fn wire(named: &NamedStructure, report: &CheckReport<'_>) -> wire::Check {
+    let CheckReport { assessment, explanation, self_stress, order, seconds } = *report;
     let held = assessment.verdict != Verdict::WholeBodyUnstable;
-    let (upper, left_out) = (assessment.utilisation.upper, &assessment.left_out);
+    let upper = assessment.utilisation.upper;
     let strengths = || {
         let connectors = named.structure.connectors.iter();
         connectors.map(|connector| (connector.name.clone(), Real(connector.strength * upper))).collect()
@@ -37,50 +43,75 @@ pub(super) fn wire(
         contacts: contacts
             .map(|(force, id)| wire::CheckedContact { id: id.clone(), force_n: vector(*force) })
             .collect(),
-        left_out: wire::LeftOut {
-            fixed_bodies: left_out.fixed_bodies as u64,
-            merged_bodies: left_out.merged_bodies as u64,
-            closed_form_connections: left_out.closed_form_connections as u64,
-            closed_form_contacts: left_out.closed_form_contacts as u64,
-            solved_blocks: left_out.solved_blocks as u64,
-            largest_block_bodies: left_out.largest_block_bodies as u64,
-        },
-        explanation: explanation.map(|explanation| explained(named, explanation)),
+        gives_way: gives_way::wire(named, assessment),
+        relies_on_contact_self_stress: self_stress.and_then(SelfStress::is_relied_on),
+        order: order.map(|order| ordered(named, order)),
+        left_out: counted!(
+            LeftOut,
+            assessment.left_out,
+            [
+                fixed_bodies,
+                merged_bodies,
+                closed_form_connections,
+                closed_form_contacts,
+                solved_blocks,
+                largest_block_bodies
+            ]
+        ),
+        explanation: explanation.map(|explanation| explained(named, explanation, assessment.distribution)),
         seconds: Real(seconds),
     }
 }
 
-fn explained(named: &NamedStructure, explanation: &Explanation) -> wire::Explanation {
-    wire::Explanation {
-        fixed_bodies: explanation.fixed_bodies as u64,
-        merged_bodies: explanation.merged_bodies as u64,
-        unlimited_connections: explanation.unlimited_connections as u64,
-        idle_links: explanation.idle_links as u64,
-        afloat: explanation.afloat as u64,
-        closed_form_connections: explanation.closed_form_connections as u64,
-        closed_form_contacts: explanation.closed_form_contacts as u64,
-        unloaded_blocks: explanation.unloaded_blocks as u64,
+fn ordered(named: &NamedStructure, order: &FailureOrder) -> wire::Order {
+    let ids = |connections: &[usize]| connections.iter().map(|&i| named.connections[i].clone()).collect();
+    let level = |level: &FailureLevel| wire::Level {
+        utilisation: bracket(level.utilisation),
+        connections: ids(&level.connections),
+    };
+    wire::Order { levels: order.levels.iter().map(level).collect(), idle: ids(&order.idle), open: ids(&order.open) }
+}
+
+fn explained(named: &NamedStructure, explanation: &Explanation, shown: Distribution) -> wire::Explanation {
+    let margin_only = shown == Distribution::Proof;
+    counted!(
+        Explanation,
+        explanation,
+        [
+            fixed_bodies,
+            merged_bodies,
+            unlimited_connections,
+            idle_links,
+            afloat,
+            closed_form_connections,
+            closed_form_contacts,
+            unloaded_blocks
+        ],
         linear: explanation.is_linear(),
-        not_asked_for: NOT_ASKED_FOR.map(str::to_owned).to_vec(),
+        not_asked_for: NOT_ASKED_FOR.iter().filter(|_| margin_only).map(|what| (*what).to_owned()).collect(),
         remaining: explanation.remaining.iter().map(|block| remaining(named, block)).collect(),
-    }
+    )
 }
 
 fn remaining(named: &NamedStructure, block: &Remaining) -> wire::RemainingBlock {
-    wire::RemainingBlock {
-        bodies: block.bodies as u64,
-        connections: block.connections as u64,
-        contacts: block.contacts as u64,
-        chains: block.chains as u64,
-        bodies_in_chains: block.bodies_in_chains as u64,
-        unknown_wrenches: block.unknown_wrenches as u64,
-        equations: block.equations as u64,
+    counted!(
+        RemainingBlock,
+        block,
+        [
+            bodies,
+            connections,
+            contacts,
+            chains,
+            bodies_in_chains,
+            unknown_wrenches,
+            equations,
+            friction_cones,
+            connector_cones,
+            inequalities
+        ],
         planar: block.is_planar(),
         in_space_because: block.in_space.map(|why| in_space_because(named, why)),
-        friction_cones: block.friction_cones as u64,
-        connector_cones: block.connector_cones as u64,
-        inequalities: block.inequalities as u64,
-    }
+    )
 }
 
 /// Why a block is solved in space, in words.

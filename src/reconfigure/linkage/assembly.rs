@@ -3,6 +3,8 @@
 //! Knows which ports hold, which bodies touch and where; knows neither actions nor what the oracle
 //! makes of the structure.
 
+use std::fmt;
+
 use crate::geometry::{BroadPhase, ContactPatch, Solid, Surrounding, Surroundings, TOUCH, contact};
 use crate::robot::ModuleType;
 use crate::robot::linkage::{Connection, Linkage, Port, frame_between};
@@ -56,6 +58,15 @@ pub enum Touched {
     Ground,
     /// The obstacle with this index.
     Obstacle(usize),
+}
+
+impl From<Surrounding> for Touched {
+    fn from(what: Surrounding) -> Self {
+        match what {
+            Surrounding::Ground => Self::Ground,
+            Surrounding::Obstacle(index) => Self::Obstacle(index),
+        }
+    }
 }
 
 /// A structure with the way back to the linkage.
@@ -230,11 +241,7 @@ impl<'a> Assembler<'a> {
                 continue;
             }
             for (what, patch) in self.surroundings.contacts(solid, self.tolerance) {
-                let touched = match what {
-                    Surrounding::Ground => Touched::Ground,
-                    Surrounding::Obstacle(obstacle) => Touched::Obstacle(obstacle),
-                };
-                add_contacts(assembly, index, Anchor::World, touched, what.friction(environment), patch);
+                add_contacts(assembly, index, Anchor::World, what.into(), what.friction(environment), patch);
             }
         }
     }
@@ -320,5 +327,15 @@ fn add_contacts(
     for position in patch.points {
         assembly.structure.contacts.push(Contact { body, against, position, normal: patch.normal, friction });
         assembly.contacts.push((assembly.bodies[body], touched));
+    }
+}
+
+impl fmt::Display for Touched {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Body(body) => write!(f, "body {} of module number {}", body.body, body.module),
+            Self::Obstacle(index) => write!(f, "obstacle number {index}"),
+            Self::Ground => f.write_str("the ground"),
+        }
     }
 }

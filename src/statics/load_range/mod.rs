@@ -66,13 +66,14 @@ pub struct RangeEnd {
     /// The state just beyond the end: its critical connections and its mechanism are what
     /// fails there. `None` where there is no end, or none that was found.
     pub beyond: Option<Box<Assessment>>,
+    /// What an error in N is measured by.
+    size: f64,
 }
 
 impl RangeEnd {
-    /// Whether the end is known to the relative [`RANGE_GAP`], or is known not to exist.
+    /// Whether the end is known to [`RANGE_GAP`], or is known not to exist.
     pub fn is_decided(&self) -> bool {
-        let Bracket { lower, upper } = self.force;
-        lower == upper || upper - lower <= RANGE_GAP * lower.abs().max(upper.abs())
+        self.force.width() <= RANGE_GAP * self.size
     }
 
     /// Whether it is proved that there is no end.
@@ -104,7 +105,24 @@ pub enum LoadRange {
     },
 }
 
-/// Relative width of an end's bracket that counts as known: that of one part in a million.
+impl LoadRange {
+    /// Whether the structure stands under so much of the force; `None` where that is not known.
+    pub fn contains(&self, force: f64) -> Option<bool> {
+        match self {
+            Self::Between { lowest, highest } => {
+                let (low, high) = (lowest.force, highest.force);
+                let inside = low.upper <= force && force <= high.lower;
+                let outside = force < low.lower || force > high.upper;
+                (inside || outside).then_some(inside)
+            }
+            Self::Nowhere { .. } => Some(false),
+            Self::Undecided { .. } => None,
+        }
+    }
+}
+
+/// Width of an end's bracket that counts as known, as a share of the larger of the forces of the
+/// range and a thousandth of those that the structure is made for.
 pub const RANGE_GAP: f64 = 1e-6;
 
 /// Share of the limit up to which the loads alone are a good place to start from.
@@ -190,23 +208,26 @@ struct Start {
 fn end(line: &Line<'_>, start: &Start, sign: f64, limit: f64) -> RangeEnd {
     let mut reach = reach::reach(line, start, sign, limit);
     if reach.outer.is_infinite() && line.demands_nothing(sign) {
-        return RangeEnd { force: Bracket::exact(sign * f64::INFINITY), beyond: None };
+        return RangeEnd { force: Bracket::exact(sign * f64::INFINITY), beyond: None, size: reach.size(start) };
     }
     polish::polish(line, start, sign, limit, &mut reach);
     let (inner, outer) = (start.force + sign * reach.inner, start.force + sign * reach.outer);
     let force = if sign > 0.0 { Bracket::new(inner, outer) } else { Bracket::new(outer, inner) };
-    RangeEnd { force, beyond: beyond(line, start, sign, &reach, limit).map(Box::new) }
+    let beyond = beyond(line, start, sign, &reach, limit).map(Box::new);
+    RangeEnd { force, beyond, size: reach.size(start) }
 }
 
-/// What fails a little beyond an end.
+/// What fails a little beyond an end: as little as the oracle can tell.
 fn beyond(line: &Line<'_>, start: &Start, sign: f64, reach: &Reach, limit: f64) -> Option<Assessment> {
-    const BEYOND: f64 = 1e-6;
+    const BEYOND: [f64; 3] = [1e-6, 1e-4, 1e-2];
     if !reach.outer.is_finite() {
         return None;
     }
-    let step = reach.outer + BEYOND * reach.size(start);
-    let answer = line.assess(start.force + sign * step, Question::VALUE);
-    (answer.verdict == Verdict::WholeBodyUnstable || answer.utilisation.lower > limit).then_some(answer)
+    BEYOND.iter().find_map(|share| {
+        let step = reach.outer + share * reach.size(start);
+        let answer = line.assess(start.force + sign * step, Question::VALUE);
+        (answer.verdict == Verdict::WholeBodyUnstable || answer.utilisation.lower > limit).then_some(answer)
+    })
 }
 
 fn refuse(structure: &Structure, force: &UnitForce, limit: f64) -> Result<(), Vec<InvalidStructure>> {
