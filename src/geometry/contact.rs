@@ -89,8 +89,9 @@ fn touching_normal(a: &Solid, b: &Solid, tolerance: f64) -> Option<Vec3> {
     }
     let touching = || found.iter().filter(|s| s.gap >= -tolerance && s.is_exact);
     let first = touching().next()?.normal;
-    if [a, b].iter().any(|solid| matches!(solid.shape, crate::robot::Shape::Ball { .. })) {
-        // A ball has one normal at every point; directions close to it have almost its gap.
+    if [a, b].iter().any(|solid| solid.is_round()) {
+        // What is round has almost the same gap along directions close by; whether the
+        // best is the only one is for the features to say.
         return touching().copied().reduce(wider).map(|s| s.normal);
     }
     touching().all(|s| first.cross(&s.normal).norm() <= SAME_NORMAL).then_some(first)

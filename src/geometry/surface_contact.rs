@@ -102,7 +102,7 @@ impl Touching<'_> {
     /// The directions along which the figures touch, each once.
     fn candidates(&self, found: &Separations) -> Vec<Separation> {
         let touching = found.iter().copied().filter(|s| s.gap >= -self.tolerance && s.is_exact);
-        if self.figure.ball().is_some() {
+        if self.figure.is_round() {
             return touching.reduce(wider).into_iter().collect();
         }
         let mut distinct: Vec<Separation> = Vec::new();
