@@ -11,6 +11,8 @@
 mod ablation_scenes;
 #[path = "support/machine.rs"]
 mod machine;
+#[path = "support/publish.rs"]
+mod publish;
 #[path = "../tests/support/random.rs"]
 #[expect(dead_code, reason = "what tests turn about stays as it is here")]
 mod random;
@@ -18,7 +20,6 @@ mod random;
 mod scenes;
 
 use std::fmt::Write as _;
-use std::io::Write as _;
 use std::time::Instant;
 
 use ablation_scenes::{Scene, all};
@@ -59,18 +60,10 @@ struct Row {
 }
 
 fn main() {
-    // `cargo test --benches` only wants to see that it starts.
-    let quick = std::env::args().any(|argument| argument == "--test");
+    let quick = publish::only_starts();
     let scenes = all().into_iter().filter(|scene| !quick || scene.structure.bodies.len() <= 40);
     let rows: Vec<Row> = scenes.map(|scene| measure(&scene, if quick { 1 } else { ROUNDS })).collect();
-    let report = report(&rows);
-    std::io::stdout().write_all(report.as_bytes()).expect("the report can be written");
-    if !quick {
-        let record = concat!(env!("CARGO_MANIFEST_DIR"), "/benches/record");
-        std::fs::create_dir_all(record).expect("the folder of records can be made");
-        std::fs::write(format!("{record}/ablation.md"), report).expect("the record can be written");
-        std::fs::write(format!("{record}/ablation.csv"), table(&rows)).expect("the record can be written");
-    }
+    publish::publish("ablation", &report(&rows), &table(&rows));
 }
 
 fn measure(scene: &Scene, rounds: usize) -> Row {

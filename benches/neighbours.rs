@@ -8,6 +8,8 @@
 
 #[path = "support/machine.rs"]
 mod machine;
+#[path = "support/publish.rs"]
+mod publish;
 #[path = "../tests/support/random.rs"]
 #[expect(dead_code, reason = "what tests build on is not walked on here")]
 mod random;
@@ -18,9 +20,8 @@ mod scenes;
 mod walks;
 
 use std::fmt::Write as _;
-use std::io::Write as _;
-use std::time::Instant;
 
+use cpu_time::ProcessTime;
 use steadfast::statics::{Assessment, Question, Rung, Tally, Verdict, assess, assess_keeping, assess_near};
 use walks::{Step, Walk};
 
@@ -45,19 +46,11 @@ const COST: f64 = 0.2;
 
 fn main() {
     rayon::ThreadPoolBuilder::new().num_threads(1).build_global().expect("nothing has started threads yet");
-    // `cargo test --benches` only wants to see that it starts.
-    let quick = std::env::args().any(|argument| argument == "--test");
+    let quick = publish::only_starts();
     let states = if quick { 5 } else { STATES };
     let walks = walks::trusses().into_iter().chain(walks::cubes());
     let rows: Vec<Row> = walks.map(|walk| measure(walk, states, if quick { 1 } else { REPETITIONS })).collect();
-    let report = report(&rows, states);
-    std::io::stdout().write_all(report.as_bytes()).expect("the report can be written");
-    if !quick {
-        let record = concat!(env!("CARGO_MANIFEST_DIR"), "/benches/record");
-        std::fs::create_dir_all(record).expect("the folder of records can be made");
-        std::fs::write(format!("{record}/neighbours.md"), report).expect("the record can be written");
-        std::fs::write(format!("{record}/neighbours.csv"), table(&rows)).expect("the record can be written");
-    }
+    publish::publish("neighbours", &report(&rows, states), &table(&rows));
 }
 
 /// What was found on one walk.
@@ -135,10 +128,10 @@ fn check(name: &str, answer: &Assessment, truth: &Assessment) {
     assert_eq!(answer.verdict, truth.verdict, "{name}: {near:?} against {cold:?}");
 }
 
-/// Milliseconds of the fastest of some repetitions.
+/// Milliseconds of processor time of the fastest of some repetitions.
 fn fastest<T>(repetitions: usize, work: impl Fn() -> T) -> f64 {
     let once = |_| {
-        let started = Instant::now();
+        let started = ProcessTime::now();
         std::hint::black_box(work());
         started.elapsed().as_secs_f64() * 1e3
     };
@@ -147,7 +140,7 @@ fn fastest<T>(repetitions: usize, work: impl Fn() -> T) -> f64 {
 
 fn report(rows: &[Row], states: usize) -> String {
     let mut text = format!(
-        "# Neighbouring states\n\n{}; {states} states per walk; of {REPETITIONS} timings the fastest.\n\n",
+        "# Neighbouring states\n\n{}; {states} states per walk; of {REPETITIONS} processor times the fastest.\n\n",
         machine::describe()
     );
     text += "Mean milliseconds per state: `near` as a neighbour of the state before, solved where bounds did not decide; \

@@ -16,13 +16,15 @@ const LAYERS: [(&str, &[&str]); 7] = [
 ];
 
 /// Libraries that only one layer may name.
-const HOMES: [(&str, &str); 6] = [
+const HOMES: [(&str, &str); 8] = [
     ("clarabel", "statics"),
     ("parry3d_f64", "geometry"),
     ("serde", "io"),
     ("serde_json", "io"),
     ("schemars", "io"),
     ("sha2", "io"),
+    ("stl_io", "io"),
+    ("tobj", "io"),
 ];
 
 /// What the checker of certificates may take from the oracle: plain data.

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use libtest_mimic::{Arguments, Failed, Trial};
 use problems::{ByGeometry, FewestMoves, LargestMargin, PlanningCase};
-use steadfast::io::{PlanDocument, Problem, SourceFile, no_references, read_plan, read_problem, write_plan};
+use steadfast::io::{LatticeProblem, PlanDocument, SourceFile, no_references, read_plan, read_problem, write_plan};
 use steadfast::reconfigure::replay::{Fault, replay};
 use steadfast::reconfigure::{MARGIN_TOLERANCE, Objective, Options, Outcome, Plan, Reduction, Report, solve};
 
@@ -22,7 +22,7 @@ fn main() {
 }
 
 /// A question to a problem.
-type Question = Box<dyn FnOnce(&Problem) -> Result<(), Failed> + Send>;
+type Question = Box<dyn FnOnce(&LatticeProblem) -> Result<(), Failed> + Send>;
 
 fn trials(name: &str, case: &PlanningCase) -> Vec<Trial> {
     let mut trials = Vec::new();
@@ -53,13 +53,14 @@ fn trials(name: &str, case: &PlanningCase) -> Vec<Trial> {
     trials
 }
 
-fn read(name: &str) -> Result<Problem, Failed> {
+fn read(name: &str) -> Result<LatticeProblem, Failed> {
     let directory = problems::root().join("cubes").join(name);
     let file = |which: &str| std::fs::read(directory.join(which)).map(|bytes| SourceFile::new(which, bytes));
-    Ok(read_problem(&file("start.json")?, &file("goal.json")?, &no_references)?)
+    let problem = read_problem(&file("start.json")?, &file("goal.json")?, &no_references)?;
+    problem.into_lattice().ok_or_else(|| "not all modules sit in a lattice".into())
 }
 
-fn search(problem: &Problem, options: Options) -> Result<Report, Failed> {
+fn search(problem: &LatticeProblem, options: Options) -> Result<Report, Failed> {
     let options = Options { time_limit: Some(TIME_LIMIT), ..options };
     let report = solve(&problem.start, &problem.goal, &options, &mut |_| {}).map_err(|refusal| refusal.to_string())?;
     if let Some(required) = report.required {
@@ -71,13 +72,13 @@ fn search(problem: &Problem, options: Options) -> Result<Report, Failed> {
     Ok(report)
 }
 
-fn verify(problem: &Problem, plan: &Plan, required: f64) -> Result<(), Failed> {
+fn verify(problem: &LatticeProblem, plan: &Plan, required: f64) -> Result<(), Failed> {
     let check = replay(&problem.start, &problem.goal, plan, required).map_err(|refusal| refusal.to_string())?;
     if check.is_verified() { Ok(()) } else { Err(format!("not verified: {:?}", check.failures).into()) }
 }
 
 /// The plan file says the same as the plan.
-fn reads_back_and_verifies(problem: &Problem, report: &Report) -> Result<(), Failed> {
+fn reads_back_and_verifies(problem: &LatticeProblem, report: &Report) -> Result<(), Failed> {
     let text = write_plan(&PlanDocument::new(problem.clone(), report)).map_err(|trouble| trouble.to_string())?;
     let document = read_plan(&SourceFile::new("plan.json", text))?;
     is(&document.report.plan, &report.plan)?;
@@ -88,7 +89,7 @@ fn is<T: PartialEq + std::fmt::Debug>(found: T, expected: T) -> Result<(), Faile
     if found == expected { Ok(()) } else { Err(format!("expected {expected:?}, found {found:?}").into()) }
 }
 
-fn fewest(problem: &Problem, expected: &FewestMoves, reduction: Reduction) -> Result<(), Failed> {
+fn fewest(problem: &LatticeProblem, expected: &FewestMoves, reduction: Reduction) -> Result<(), Failed> {
     let report = search(problem, Options { objective: Objective::Moves, reduction, ..Options::default() })?;
     let outcome = match report.outcome {
         Outcome::Solved => "solved",
@@ -100,7 +101,7 @@ fn fewest(problem: &Problem, expected: &FewestMoves, reduction: Reduction) -> Re
     is(report.proof.optimal, expected.moves.is_some())
 }
 
-fn widest(problem: &Problem, expected: &LargestMargin, reduction: Reduction) -> Result<f64, Failed> {
+fn widest(problem: &LatticeProblem, expected: &LargestMargin, reduction: Reduction) -> Result<f64, Failed> {
     let report = search(problem, Options { objective: Objective::Margin, reduction, ..Options::default() })?;
     is(&report.outcome, &Outcome::Solved)?;
     is(report.proof.optimal, true)?;
@@ -116,7 +117,7 @@ fn widest(problem: &Problem, expected: &LargestMargin, reduction: Reduction) -> 
 }
 
 /// The search over single actions finds the same margin.
-fn agree(problem: &Problem, expected: &LargestMargin) -> Result<(), Failed> {
+fn agree(problem: &LatticeProblem, expected: &LargestMargin) -> Result<(), Failed> {
     let saturated = widest(problem, expected, Reduction::Saturated)?;
     let primitive = widest(problem, expected, Reduction::Primitive)?;
     if (saturated - primitive).abs() <= 2.0 * MARGIN_TOLERANCE {
@@ -126,7 +127,7 @@ fn agree(problem: &Problem, expected: &LargestMargin) -> Result<(), Failed> {
     }
 }
 
-fn by_geometry(problem: &Problem, expected: &ByGeometry) -> Result<(), Failed> {
+fn by_geometry(problem: &LatticeProblem, expected: &ByGeometry) -> Result<(), Failed> {
     let options = Options { objective: Objective::Moves, ignore_stability: true, ..Options::default() };
     let report = search(problem, options)?;
     let plan = report.plan.ok_or("no plan by geometry")?;
@@ -137,7 +138,7 @@ fn by_geometry(problem: &Problem, expected: &ByGeometry) -> Result<(), Failed> {
     is(only_unstable, true)
 }
 
-fn several(problem: &Problem, at_least: usize) -> Result<(), Failed> {
+fn several(problem: &LatticeProblem, at_least: usize) -> Result<(), Failed> {
     let options = Options { objective: Objective::Moves, plans: at_least, ..Options::default() };
     let report = search(problem, options)?;
     let best = report.plan.ok_or("no plan")?;
@@ -149,7 +150,7 @@ fn several(problem: &Problem, at_least: usize) -> Result<(), Failed> {
     Ok(())
 }
 
-fn same_on_any_number_of_threads(problem: &Problem) -> Result<(), Failed> {
+fn same_on_any_number_of_threads(problem: &LatticeProblem) -> Result<(), Failed> {
     let on = |threads: usize| -> Result<_, Failed> {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
         let options = Options { objective: Objective::Moves, ..Options::default() };

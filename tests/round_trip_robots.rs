@@ -8,7 +8,7 @@ use proptest::option;
 use proptest::prelude::*;
 use proptest::sample::{Index, select};
 use steadfast::io::{
-    AxisAngle, Contradiction, PlanDocument, Problem, SourceFile, no_references, read_configuration, read_plan,
+    AxisAngle, Contradiction, LatticeProblem, PlanDocument, SourceFile, no_references, read_configuration, read_plan,
     write_configuration, write_plan,
 };
 use steadfast::reconfigure::{
@@ -79,7 +79,7 @@ prop_compose! {
     ) -> Obstacle {
         let rotation = Rotation::from_euler_angles(turn[0], turn[1], turn[2]);
         Obstacle {
-            shape: Shape::Cuboid { half_extents: Vec3::from(half) },
+            shape: Shape::Cuboid { half_extents: Vec3::from(half) }.into(),
             pose: Pose::from_parts(Vec3::from(at).into(), rotation),
             friction: friction.abs(),
         }
@@ -291,7 +291,7 @@ prop_compose! {
             (f64::INFINITY, 0)
         };
         PlanDocument {
-            problem: Problem { start, goal },
+            problem: LatticeProblem { start, goal },
             report: Report {
                 outcome,
                 objective: if by_moves { Objective::Moves } else { Objective::Margin },

@@ -2,8 +2,9 @@
 
 use crate::spatial::Vec3;
 
-use super::polygon::{Point2, clip, convex_hull, crossing};
-use super::separation::separations;
+use super::figure::Figure;
+use super::polygon::{Point2, clip, common_of_segments, convex_hull, crossing, distance_to_segment};
+use super::separation::{Separation, separations};
 use super::solid::Solid;
 use super::tolerances::SAME_NORMAL;
 
@@ -21,72 +22,128 @@ pub struct ContactPatch {
 ///
 /// Face on face gives the corners of the common polygon, an edge on a face the
 /// ends of the common segment, a vertex on a face and two crossing edges one
-/// point. `None` when the solids are apart, when they penetrate deeper, and when
+/// point. A ball touches in one point, the side of a cylinder in the ends of a segment or in one point. A
+/// cylinder's cap counts as a regular polygon of 16 corners on its rim: an inner approximation,
+/// which never claims more support than there is.
+///
+/// `None` when the solids are apart, when they penetrate deeper, and when
 /// the normal is not unique: two solids that share only (part of) a parallel
 /// edge, or meet in a corner, can carry no force that is sure.
 pub fn contact(a: &Solid, b: &Solid, tolerance: f64) -> Option<ContactPatch> {
     let normal = touching_normal(a, b, tolerance)?;
-    let [u, v] = plane_axes(&normal);
-    let support = |solid: &Solid, towards: Vec3| {
-        let vertices = solid.vertices();
-        let extreme = vertices.iter().map(|p| p.dot(&towards)).fold(f64::NEG_INFINITY, f64::max);
-        let near = vertices.into_iter().filter(|p| p.dot(&towards) >= extreme - tolerance);
-        let flat = near.map(|p| Point2::new(p.dot(&u), p.dot(&v))).collect();
-        (extreme, convex_hull(flat, tolerance))
-    };
-    let (depth_a, feature_a) = support(a, -normal);
-    let (height_b, feature_b) = support(b, normal);
-    let level = (height_b - depth_a) / 2.0;
-
-    let common = match (&feature_a[..], &feature_b[..]) {
-        (_, [_, _, _, ..]) => clip(feature_a, &feature_b, tolerance),
-        ([_, _, _, ..], _) => clip(feature_b, &feature_a, tolerance),
-        (&[a0, a1], &[b0, b1]) => crossing([a0, a1], [b0, b1], tolerance).into_iter().collect(),
-        _ => Vec::new(),
-    };
-    let common = convex_hull(common, tolerance);
-    let points: Vec<_> = common.iter().map(|p| u * p.x + v * p.y + normal * level).collect();
+    let plane = Plane::across(normal);
+    let (a, b) = (Figure::new(a), Figure::new(b));
+    let common = plane.common(&a, &b, tolerance);
+    let level = (b.reach(&normal) - a.reach(&-normal)) / 2.0;
+    let points: Vec<_> = convex_hull(common, tolerance).iter().map(|p| plane.at(p, level)).collect();
     (!points.is_empty()).then_some(ContactPatch { normal, points })
 }
 
-/// Contact of a solid with the ground below `height` in m: its corners within
-/// `tolerance` of the surface; `None` when it is above or deeper in.
-pub fn ground_contact(solid: &Solid, height: f64, tolerance: f64) -> Option<ContactPatch> {
-    let vertices = solid.vertices();
-    let lowest = vertices.iter().map(|p| p.z).fold(f64::INFINITY, f64::min);
-    let touches = (lowest - height).abs() <= tolerance;
+/// Contact of a solid with a half-space: its corners within `tolerance` in m of the plane at `level` along
+/// `normal` (unit, out of the half-space); `None` when it is above or deeper in.
+pub(super) fn half_space_contact(solid: &Solid, normal: &Vec3, level: f64, tolerance: f64) -> Option<ContactPatch> {
+    let figure = Figure::new(solid);
+    let lowest = -figure.reach(&-normal);
+    let touches = (lowest - level).abs() <= tolerance;
     if !touches {
         return None;
     }
-    let near = vertices.into_iter().filter(|p| p.z <= height + tolerance);
-    let flat = convex_hull(near.map(|p| Point2::new(p.x, p.y)).collect(), tolerance);
-    let points = flat.iter().map(|p| Vec3::new(p.x, p.y, height)).collect();
-    Some(ContactPatch { normal: Vec3::z(), points })
+    let plane = Plane::across(*normal);
+    let near = figure.feature(&-normal, level + tolerance - lowest);
+    let flat = convex_hull(near.iter().map(|p| plane.flat(p)).collect(), tolerance);
+    Some(ContactPatch { normal: *normal, points: flat.iter().map(|p| plane.at(p, level)).collect() })
 }
 
 /// The one direction along which two solids touch; `None` when they do not, or
 /// when there is more than one.
 fn touching_normal(a: &Solid, b: &Solid, tolerance: f64) -> Option<Vec3> {
-    let mut normal: Option<Vec3> = None;
-    for separation in separations(a, b) {
-        if separation.gap > tolerance {
-            return None;
-        }
-        if separation.gap >= -tolerance {
-            match &normal {
-                None => normal = Some(separation.normal),
-                Some(first) if first.cross(&separation.normal).norm() <= SAME_NORMAL => {}
-                Some(_) => return None,
-            }
-        }
+    let found = separations(a, b);
+    if found.iter().any(|s| s.gap > tolerance) {
+        return None;
     }
-    normal
+    let touching = || found.iter().filter(|s| s.gap >= -tolerance);
+    let first = touching().next()?.normal;
+    if [a, b].iter().any(|solid| matches!(solid.shape, crate::robot::Shape::Ball { .. })) {
+        // A ball has one normal at every point; directions close to it have almost its gap.
+        return touching().copied().reduce(wider).map(|s| s.normal);
+    }
+    touching().all(|s| first.cross(&s.normal).norm() <= SAME_NORMAL).then_some(first)
 }
 
-/// Two unit vectors that complete `normal` to a right-handed frame: along the
-/// world's axes where the normal is, so that lattice contacts keep exact numbers.
-fn plane_axes(normal: &Vec3) -> [Vec3; 2] {
-    let across = Vec3::ith(normal.iamin(), 1.0);
-    let u = (across - normal * normal.dot(&across)).normalize();
-    [u, normal.cross(&u)]
+/// The separation with the larger gap, the first if equal.
+pub(super) fn wider(a: Separation, b: Separation) -> Separation {
+    if b.gap > a.gap { b } else { a }
+}
+
+/// Coordinates in the planes across a normal.
+pub(super) struct Plane {
+    normal: Vec3,
+    axes: [Vec3; 2],
+}
+
+impl Plane {
+    /// Coordinates across `normal` (unit), right-handed with it: along the world's axes where
+    /// the normal is, so that lattice contacts keep exact numbers.
+    pub fn across(normal: Vec3) -> Self {
+        let across = Vec3::ith(normal.iamin(), 1.0);
+        let u = (across - normal * normal.dot(&across)).normalize();
+        Self { normal, axes: [u, normal.cross(&u)] }
+    }
+
+    /// A point without its height.
+    pub fn flat(&self, p: &Vec3) -> Point2 {
+        Point2::new(p.dot(&self.axes[0]), p.dot(&self.axes[1]))
+    }
+
+    /// The point at a height along the normal.
+    pub fn at(&self, p: &Point2, level: f64) -> Vec3 {
+        self.axes[0] * p.x + self.axes[1] * p.y + self.normal * level
+    }
+
+    /// The hull of the feature of `figure` that lies farthest against the normal.
+    pub fn lowest(&self, figure: &Figure, tolerance: f64) -> Vec<Point2> {
+        self.flattened(figure, -self.normal, tolerance)
+    }
+
+    /// The hull of the feature of `figure` that lies farthest along the normal.
+    pub fn highest(&self, figure: &Figure, tolerance: f64) -> Vec<Point2> {
+        self.flattened(figure, self.normal, tolerance)
+    }
+
+    fn flattened(&self, figure: &Figure, direction: Vec3, tolerance: f64) -> Vec<Point2> {
+        let feature = figure.feature(&direction, tolerance);
+        convex_hull(feature.iter().map(|p| self.flat(p)).collect(), tolerance)
+    }
+
+    /// What two figures that touch along the normal have in common.
+    fn common(&self, above: &Figure, below: &Figure, tolerance: f64) -> Vec<Point2> {
+        intersection(self.lowest(above, tolerance), self.highest(below, tolerance), tolerance)
+    }
+}
+
+/// The common part of two convex figures in a plane: polygons, segments or points, corners in order.
+pub(super) fn intersection(a: Vec<Point2>, b: Vec<Point2>, tolerance: f64) -> Vec<Point2> {
+    match (&a[..], &b[..]) {
+        (_, [_, _, _, ..]) => clip(a, &b, tolerance),
+        ([_, _, _, ..], _) => clip(b, &a, tolerance),
+        (&[a0, a1], &[b0, b1]) => match crossing([a0, a1], [b0, b1], tolerance) {
+            Some(point) => vec![point],
+            None => common_of_segments([a0, a1], [b0, b1], tolerance),
+        },
+        (&[p], &[from, to]) | (&[from, to], &[p]) => {
+            if distance_to_segment(&p, from, to) <= tolerance {
+                vec![p]
+            } else {
+                Vec::new()
+            }
+        }
+        (&[p], &[q]) => {
+            if (p - q).norm() <= tolerance {
+                vec![p]
+            } else {
+                Vec::new()
+            }
+        }
+        _ => Vec::new(),
+    }
 }

@@ -2,9 +2,8 @@
 
 use crate::robot::{Configuration, Fault, Part, Problem};
 
-use super::broad_phase::BroadPhase;
-use super::separation::overlap;
 use super::solid::Solid;
+use super::surroundings::{Surrounding, Surroundings};
 use super::tolerances::SKIN;
 
 /// Most problems that are looked for: modules and obstacles that all overlap each
@@ -15,8 +14,7 @@ const MOST: usize = 100;
 /// and not many more than a hundred problems in all. Completes [`Configuration::problems`],
 /// of which there must be none.
 pub fn environment_problems(configuration: &Configuration) -> Vec<Problem> {
-    let environment = &configuration.environment;
-    let obstacles = BroadPhase::new(environment.obstacles.iter().map(Solid::from).collect());
+    let surroundings = Surroundings::new(&configuration.environment);
     let mut problems = Vec::new();
     for module in 0..configuration.modules.len() {
         if problems.len() >= MOST {
@@ -24,16 +22,17 @@ pub fn environment_problems(configuration: &Configuration) -> Vec<Problem> {
         }
         let shape = configuration.module_type(module).body().shape.clone();
         let solid = Solid::new(shape, configuration.pose(module));
-        let skin = SKIN * solid.size();
         let mut add = |fault| problems.push(Problem::new(Part::Module(module), "placement", fault));
-        if let Some(ground) = &environment.ground
-            && !solid.vertices().iter().all(|p| p.z >= ground.height - skin)
-        {
-            add(Fault::BelowGround);
-        }
-        let mut near = obstacles.near(&solid, 0.0).into_iter();
-        if let Some((obstacle, _)) = near.find(|(_, other)| overlap(&solid, other, skin)) {
-            add(Fault::InsideObstacle { obstacle });
+        let mut in_obstacle = false;
+        for what in surroundings.overlaps(&solid, SKIN * solid.size()) {
+            match what {
+                Surrounding::Ground => add(Fault::BelowGround),
+                Surrounding::Obstacle(obstacle) if !in_obstacle => {
+                    in_obstacle = true;
+                    add(Fault::InsideObstacle { obstacle });
+                }
+                Surrounding::Obstacle(_) => {}
+            }
         }
     }
     problems

@@ -40,6 +40,14 @@ impl Motion {
         self.at(phase) * start
     }
 
+    /// Length in m of the way that a point goes, in one unit of phase.
+    pub(super) fn speed_of(&self, point: &Vec3) -> f64 {
+        match self {
+            Self::Translation { by } => by.norm(),
+            Self::Rotation { centre, axis, angle } => axis.cross(&(point - centre)).norm() * angle.abs(),
+        }
+    }
+
     /// By how much the phase may rise from that at which corners of the body are
     /// at `points`, until one of them has gone `gap` in m, at least 0, beyond
     /// where the last of them is now against `normal` (unit). Exact but for

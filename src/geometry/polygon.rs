@@ -80,3 +80,36 @@ pub(super) fn crossing(a: [Point2; 2], b: [Point2; 2], tolerance: f64) -> Option
     };
     (within(share_a, length_a) && within(share_b, length_b)).then(|| a[0] + along_a * share_a)
 }
+
+/// The common part of two segments on one line, within `tolerance`; empty when
+/// they are not on one line or do not reach each other.
+pub(super) fn common_of_segments(a: [Point2; 2], b: [Point2; 2], tolerance: f64) -> Vec<Point2> {
+    let along = (a[1] - a[0]).normalize();
+    if b.iter().any(|p| along.perp(&(p - a[0])).abs() > tolerance) {
+        return Vec::new();
+    }
+    let at = |p: &Point2| along.dot(&(p - a[0]));
+    let low = at(&b[0]).min(at(&b[1])).max(0.0);
+    let high = at(&b[0]).max(at(&b[1])).min(at(&a[1]));
+    if high < low - tolerance {
+        return Vec::new();
+    }
+    vec![a[0] + along * low, a[0] + along * high]
+}
+
+/// Distance of a point from a segment.
+pub(super) fn distance_to_segment(p: &Point2, from: Point2, to: Point2) -> f64 {
+    let along = to - from;
+    let share = ((p - from).dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
+    (p - from - along * share).norm()
+}
+
+/// How far a point is inside a counter-clockwise convex polygon: its distance from the
+/// nearest side's line; negative outside.
+pub(super) fn depth_within(p: &Point2, polygon: &[Point2]) -> f64 {
+    let side = |i: usize| {
+        let from = polygon[i];
+        (polygon[(i + 1) % polygon.len()] - from).normalize().perp(&(p - from))
+    };
+    (0..polygon.len()).map(side).fold(f64::INFINITY, f64::min)
+}

@@ -1,14 +1,16 @@
 //! Convex solids at a pose.
 
-use crate::robot::{Obstacle, Shape};
+use crate::robot::Shape;
 use crate::spatial::{Point, Pose, Vec3};
+
+use super::figure::Figure;
 
 /// A convex solid at a pose in W.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solid {
-    /// Its shape, centred on its own frame.
+    /// Its shape.
     pub shape: Shape,
-    /// Pose of its frame in W.
+    /// Pose of the shape's frame in W.
     pub pose: Pose,
 }
 
@@ -18,20 +20,33 @@ impl Solid {
         Self { shape, pose }
     }
 
-    /// Centre in W, in m.
+    /// A point inside, in W, in m: the centre of its shape.
     pub fn centre(&self) -> Vec3 {
-        self.pose.translation.vector
+        match &self.shape {
+            Shape::Cuboid { .. } | Shape::Cylinder { .. } | Shape::Ball { .. } => self.pose.translation.vector,
+            Shape::Convex(hull) => (self.pose * Point::from(hull.centre())).coords,
+        }
     }
 
     /// Half of the largest extent along its own axes, in m.
     pub fn size(&self) -> f64 {
-        self.half_extents().max()
+        match &self.shape {
+            Shape::Cuboid { half_extents } => half_extents.max(),
+            Shape::Cylinder { radius, height } => radius.max(height / 2.0),
+            Shape::Ball { radius } => *radius,
+            Shape::Convex(hull) => {
+                let (low, high) = bounds(hull.corners());
+                (high - low).max() / 2.0
+            }
+        }
     }
 
-    /// Half extents along its own axes, in m.
-    pub(super) fn half_extents(&self) -> Vec3 {
-        let Shape::Cuboid { half_extents } = self.shape;
-        half_extents
+    /// Half extents of a cuboid along its own axes, in m.
+    pub(super) fn cuboid(&self) -> Option<Vec3> {
+        match self.shape {
+            Shape::Cuboid { half_extents } => Some(half_extents),
+            Shape::Cylinder { .. } | Shape::Ball { .. } | Shape::Convex(_) => None,
+        }
     }
 
     /// Its axes in W, unit length.
@@ -40,38 +55,62 @@ impl Solid {
         [0, 1, 2].map(|i| matrix.column(i).into_owned())
     }
 
-    /// Half of its extent along the direction `n` (unit) in W, in m.
-    pub(super) fn half_extent_along(&self, n: &Vec3) -> f64 {
-        let local = self.pose.rotation.inverse_transform_vector(n);
-        self.half_extents().dot(&local.abs())
-    }
-
-    /// Its corners in W, in m.
-    pub fn vertices(&self) -> [Vec3; 8] {
-        let h = self.half_extents();
-        std::array::from_fn(|i| {
+    /// Corners in W in m: of a cuboid or a hull its own, of what is round those of the
+    /// smallest box around it along its own axes.
+    pub fn vertices(&self) -> Vec<Vec3> {
+        let half = match &self.shape {
+            Shape::Cuboid { half_extents } => *half_extents,
+            Shape::Cylinder { radius, height } => Vec3::new(*radius, *radius, height / 2.0),
+            Shape::Ball { radius } => Vec3::repeat(*radius),
+            Shape::Convex(hull) => {
+                return hull.corners().iter().map(|p| (self.pose * Point::from(*p)).coords).collect();
+            }
+        };
+        let corner = |i: usize| {
             let sign = |bit: usize| if i & bit == 0 { -1.0 } else { 1.0 };
-            (self.pose * Point::new(sign(1) * h.x, sign(2) * h.y, sign(4) * h.z)).coords
-        })
+            (self.pose * Point::new(sign(1) * half.x, sign(2) * half.y, sign(4) * half.z)).coords
+        };
+        (0..8).map(corner).collect()
     }
 
-    /// Half extents of its axis-aligned bounding box in W, in m.
-    pub(super) fn bounds(&self) -> Vec3 {
-        let matrix = self.pose.rotation.to_rotation_matrix().into_inner();
-        matrix.abs() * self.half_extents()
+    /// Lowest and highest corner of its axis-aligned bounding box in W, in m.
+    pub(super) fn bounds(&self) -> (Vec3, Vec3) {
+        let around = |half: Vec3| (self.centre() - half, self.centre() + half);
+        match &self.shape {
+            Shape::Cuboid { half_extents } => {
+                let matrix = self.pose.rotation.to_rotation_matrix().into_inner();
+                around(matrix.abs() * half_extents)
+            }
+            Shape::Ball { radius } => around(Vec3::repeat(*radius)),
+            Shape::Cylinder { .. } => {
+                let figure = Figure::new(self);
+                around([0, 1, 2].map(|i| figure.reach(&Vec3::ith(i, 1.0)) - self.centre()[i]).into())
+            }
+            Shape::Convex(_) => bounds(&self.vertices()),
+        }
     }
 
-    /// The same solid with every face moved inwards by `skin` in m; a solid
-    /// thinner than twice that becomes flat.
+    /// The same solid with every face moved inwards by `skin` in m, those of a hull at
+    /// least by that; a solid thinner than twice that becomes flat.
     #[must_use]
     pub(super) fn shrunk(&self, skin: f64) -> Self {
-        let half_extents = self.half_extents().map(|h| (h - skin).max(0.0));
-        Self { shape: Shape::Cuboid { half_extents }, pose: self.pose }
+        let less = |length: f64| (length - skin).max(0.0);
+        let shape = match &self.shape {
+            Shape::Cuboid { half_extents } => Shape::Cuboid { half_extents: half_extents.map(less) },
+            Shape::Cylinder { radius, height } => {
+                Shape::Cylinder { radius: less(*radius), height: 2.0 * less(height / 2.0) }
+            }
+            Shape::Ball { radius } => Shape::Ball { radius: less(*radius) },
+            Shape::Convex(hull) => {
+                let share = less(hull.inner_radius()) / hull.inner_radius();
+                Shape::Convex(std::sync::Arc::new(hull.scaled(share)))
+            }
+        };
+        Self { shape, pose: self.pose }
     }
 }
 
-impl From<&Obstacle> for Solid {
-    fn from(obstacle: &Obstacle) -> Self {
-        Self::new(obstacle.shape.clone(), obstacle.pose)
-    }
+fn bounds(points: &[Vec3]) -> (Vec3, Vec3) {
+    let extreme = |of: fn(&Vec3, &Vec3) -> Vec3| points.iter().skip(1).fold(points[0], |so_far, p| of(&so_far, p));
+    (extreme(Vec3::inf), extreme(Vec3::sup))
 }

@@ -5,9 +5,10 @@ use parry3d_f64::query;
 use parry3d_f64::shape::Cuboid;
 use proptest::prelude::*;
 
+use super::contact::half_space_contact;
 use super::separation::separations;
 use super::*;
-use crate::robot::Shape;
+use crate::robot::{Environment, Ground, Shape};
 use crate::spatial::{Point, Pose, Rotation, Vec3};
 
 fn cuboid(half: Vec3, pose: Pose) -> Solid {
@@ -45,6 +46,16 @@ fn outside(solid: &Solid, p: &Vec3) -> f64 {
     let (shape, _) = parry(solid);
     let half = Vec3::new(shape.half_extents.x, shape.half_extents.y, shape.half_extents.z);
     (local.abs() - half).max()
+}
+
+/// Contact with the ground below a height.
+fn ground_contact(solid: &Solid, height: f64, tolerance: f64) -> Option<ContactPatch> {
+    half_space_contact(solid, &Vec3::z(), height, tolerance)
+}
+
+/// Nothing but ground.
+fn ground(height: f64) -> Surroundings {
+    Surroundings::new(&Environment { ground: Some(Ground { height, friction: 0.5 }), ..Environment::default() })
 }
 
 fn sorted(patch: &ContactPatch) -> Vec<[f64; 3]> {
@@ -179,7 +190,7 @@ fn modules_in_their_environment_are_found() {
     for x in [0.11, 0.105] {
         let shape = Shape::Cuboid { half_extents: Vec3::repeat(0.01) };
         let pose = Pose::translation(x, 0.025, 0.025);
-        configuration.environment.obstacles.push(crate::robot::Obstacle { shape, pose, friction: 0.5 });
+        configuration.environment.obstacles.push(crate::robot::Obstacle { shape: shape.into(), pose, friction: 0.5 });
     }
     let found: Vec<_> = environment_problems(&configuration).into_iter().map(|p| (p.part, p.fault)).collect();
     use crate::robot::{Fault, Part};
@@ -213,8 +224,7 @@ fn a_pivot_needs_the_cells_of_the_textbook_stencil_and_no_others() {
                     if (d, s, u) == (0, 0, 1) {
                         continue;
                     }
-                    let surroundings = Surroundings { solids: vec![solid(at(d, s, u))], ground: None };
-                    let hit = first_collision(&solid(up), &motion, &surroundings);
+                    let hit = first_collision(&solid(up), &motion, &solid(at(d, s, u)));
                     let needed = s == 0 && stencil.contains(&[d, u]);
                     assert_eq!(hit.is_some(), needed, "up {up:?} along {along:?} cell {d} {s} {u} hit {hit:?}");
                 }
@@ -227,24 +237,37 @@ fn a_pivot_needs_the_cells_of_the_textbook_stencil_and_no_others() {
 fn the_ground_stops_a_pivot_at_the_angle_of_its_lowest_corner() {
     let pivot =
         Motion::Rotation { centre: Vec3::new(0.5, 0.0, 0.0), axis: Vec3::y_axis(), angle: std::f64::consts::PI };
-    let ground = |height| Surroundings { solids: Vec::new(), ground: Some(height) };
     // From on top of a cube to beside it: nothing passes lower than at the end.
-    assert_eq!(first_collision(&cube(0.0, 0.0, 0.5), &pivot, &ground(-1.0)), None);
+    assert_eq!(ground(-1.0).first_collision(&cube(0.0, 0.0, 0.5), &pivot), None);
     // The corner straight above the edge is first at -0.5, after 120 degrees.
-    let phase = first_collision(&cube(0.0, 0.0, 0.5), &pivot, &ground(-0.5)).unwrap();
+    let (phase, what) = ground(-0.5).first_collision(&cube(0.0, 0.0, 0.5), &pivot).unwrap();
+    assert_eq!(what, Surrounding::Ground);
     assert!((phase - 120.0 / 180.0).abs() < 1e-3, "{phase}");
 }
 
 #[test]
 fn faces_that_slide_along_each_other_do_not_collide() {
-    let tunnel: Vec<_> = (0..5)
+    let mut tunnel: Vec<_> = (0..5)
         .flat_map(|x| [(0.0, 1.0), (0.0, -1.0), (1.0, 0.0), (-1.0, 0.0)].map(|(y, z)| cube(f64::from(x), y, z)))
         .collect();
     let slide = Motion::Translation { by: Vec3::new(4.0, 0.0, 0.0) };
-    let mut surroundings = Surroundings { solids: tunnel, ground: Some(-0.5) };
-    assert_eq!(first_collision(&cube(0.0, 0.0, 0.0), &slide, &surroundings), None);
-    surroundings.solids.push(cube(3.0, 0.0, 0.0));
-    let phase = first_collision(&cube(0.0, 0.0, 0.0), &slide, &surroundings).unwrap();
+    let around = |solids: &[Solid]| {
+        let obstacle = |solid: &Solid| crate::robot::Obstacle {
+            shape: solid.shape.clone().into(),
+            pose: solid.pose,
+            friction: 0.5,
+        };
+        let ground = Some(Ground { height: -0.5, friction: 0.5 });
+        Surroundings::new(&Environment {
+            ground,
+            obstacles: solids.iter().map(obstacle).collect(),
+            ..Environment::default()
+        })
+    };
+    assert_eq!(around(&tunnel).first_collision(&cube(0.0, 0.0, 0.0), &slide), None);
+    tunnel.push(cube(3.0, 0.0, 0.0));
+    let (phase, what) = around(&tunnel).first_collision(&cube(0.0, 0.0, 0.0), &slide).unwrap();
+    assert_eq!(what, Surrounding::Obstacle(20));
     assert!((phase - 0.5).abs() < 1e-3, "{phase}");
 }
 
@@ -290,7 +313,7 @@ proptest! {
         let near = Solid::new(far.shape, Pose::from(nalgebra::Translation3::from(step)) * far.pose);
 
         // A corner on a corner or on an edge touches along no one direction.
-        let close = || separations(&near, &b).filter(|s| s.gap > -10.0 * TOUCH).map(|s| s.normal);
+        let close = || separations(&near, &b).into_iter().filter(|s| s.gap > -10.0 * TOUCH).map(|s| s.normal);
         let direction = -step.normalize();
         let unique = close().count() > 0 && close().all(|n| (n - direction).norm() < 1e-6);
         let Some(patch) = contact(&near, &b, TOUCH) else {
@@ -310,8 +333,7 @@ proptest! {
     #[test]
     fn sweeps_agree_with_dense_sampling(a in any_cuboid(2.0), b in any_cuboid(2.0), motion in any_motion()) {
         let skin = SKIN * a.size();
-        let surroundings = Surroundings { solids: vec![b.clone()], ground: None };
-        let hit = first_collision(&a, &motion, &surroundings);
+        let hit = first_collision(&a, &motion, &b);
         let depth = |phase: f64| penetration(&Solid::new(a.shape.clone(), motion.pose(&a.pose, phase)), &b);
         // A start that overlaps is a hit at 0, however deep.
         let until = hit.unwrap_or(1.0);
@@ -331,7 +353,7 @@ proptest! {
     ) {
         prop_assume!(cell != other);
         let [a, b] = [cell, other].map(|c| cube(f64::from(c[0]), f64::from(c[1]), f64::from(c[2])));
-        let hit = first_collision(&a, &motion, &Surroundings { solids: vec![b.clone()], ground: None });
+        let hit = first_collision(&a, &motion, &b);
         let depth = |phase: f64| penetration(&Solid::new(a.shape.clone(), motion.pose(&a.pose, phase)), &b);
         // A start that overlaps is a hit at 0, however deep.
         let until = hit.unwrap_or(1.0);
@@ -343,7 +365,7 @@ proptest! {
 
     #[test]
     fn ground_hits_agree_with_dense_sampling(a in any_cuboid(1.0), motion in any_motion(), height in -3.0..0.0) {
-        let hit = first_collision(&a, &motion, &Surroundings { solids: Vec::new(), ground: Some(height) });
+        let hit = ground(height).first_collision(&a, &motion).map(|(phase, _)| phase);
         let depth = |phase: f64| {
             let now = Solid::new(a.shape.clone(), motion.pose(&a.pose, phase));
             height - now.vertices().iter().map(|p| p.z).fold(f64::INFINITY, f64::min)

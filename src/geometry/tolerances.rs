@@ -15,6 +15,10 @@ pub const SKIN: f64 = 1e-4;
 /// shrunk by.
 pub(super) const ARRIVED: f64 = 1e-7;
 
+/// Depth of an inscribed prism's sides below the cylinder that moves in its place, relative to
+/// the [`SKIN`]: together they stay below the skin's diagonal.
+pub(super) const SAGITTA: f64 = 0.7;
+
 /// Steps after which a solid that still scrapes along an obstacle within
 /// [`ARRIVED`] counts as colliding. Cubes among cubes take one or two steps each;
 /// of 100 000 random sweeps the longest took 157.

@@ -46,6 +46,7 @@ codes! {
     BAD_ID = "E024" "bad-id";
     OFF_CENTRE = "E025" "off-centre";
     UNSUPPORTED = "E026" "unsupported";
+    NO_SHAPE = "E027" "no-shape";
 
     // Values against each other.
     SELF_CONNECTION = "E030" "self-connection";

@@ -2,6 +2,7 @@
 
 use super::certificate_document::CertificateDocument;
 use super::plan_document::PlanDocument;
+use crate::robot::linkage::{self, Linkage};
 use crate::robot::{Configuration, Goal};
 use crate::statics::Structure;
 
@@ -55,15 +56,51 @@ pub struct NamedStructure {
     pub contacts: Vec<String>,
 }
 
-/// A start and a goal that have been checked against each other: the same
+/// A start and a goal of lattice modules that have been checked against each other: the same
 /// catalogue, gravity, environment and loads, and modules that can match.
 /// The goal's modules are in the start's order when the goal is labelled.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Problem {
+pub struct LatticeProblem {
     /// Where the robot is.
     pub start: Configuration,
     /// Where it is to be.
     pub goal: Goal,
+}
+
+/// As [`LatticeProblem`], of modules some of which are outside lattices.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LinkageProblem {
+    /// Where the robot is.
+    pub start: Linkage,
+    /// Where it is to be.
+    pub goal: linkage::Goal,
+}
+
+/// What `plan` can plan for.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Problem {
+    /// All modules sit in a lattice.
+    Lattice(LatticeProblem),
+    /// Some modules do not.
+    Linkage(LinkageProblem),
+}
+
+impl Problem {
+    /// The problem, if all modules sit in a lattice.
+    pub fn into_lattice(self) -> Option<LatticeProblem> {
+        match self {
+            Self::Lattice(problem) => Some(problem),
+            Self::Linkage(_) => None,
+        }
+    }
+
+    /// The problem, if some modules do not sit in a lattice.
+    pub fn into_linkage(self) -> Option<LinkageProblem> {
+        match self {
+            Self::Lattice(_) => None,
+            Self::Linkage(problem) => Some(problem),
+        }
+    }
 }
 
 /// What `plan check` can look at.
@@ -71,8 +108,10 @@ pub struct Problem {
 pub enum Checkable {
     /// Bodies and connections without a robot.
     Structure(NamedStructure),
-    /// A robot in its environment.
+    /// A robot in a lattice, in its environment.
     Configuration(Configuration),
+    /// A robot with modules outside lattices, in its environment.
+    Linkage(Linkage),
 }
 
 /// What `plan verify` can look at.

@@ -4,6 +4,7 @@ use super::codes::{self, Code};
 use super::diagnostics::{Diagnostic, Diagnostics};
 use super::document::{LARGEST_FILE, SourceFile};
 use super::excerpt::excerpt;
+use super::form::Form;
 use super::json::{self, Member, Node, Span};
 
 /// Most problems that are kept; what is found beyond them is not shown.
@@ -24,6 +25,8 @@ pub(super) struct Document<'a> {
     pub(super) name: &'a str,
     pub(super) text: &'a str,
     pub(super) root: Node,
+    /// What it was taken for.
+    pub(super) form: Form,
 }
 
 /// A value in a document, which need not exist: a missing one is shown at the
@@ -39,6 +42,24 @@ pub(super) struct Place<'a> {
 impl Findings {
     /// Parses a file; `None` after a problem that leaves nothing to look at.
     pub(super) fn open<'a>(&mut self, file: &'a SourceFile) -> Option<Document<'a>> {
+        let (name, text) = self.text(file)?;
+        self.json(name, text)
+    }
+
+    /// Parses a file that says what a robot is, in this program's format or in one of the RoFI platform's.
+    pub(super) fn open_robot<'a>(&mut self, file: &'a SourceFile) -> Option<Document<'a>> {
+        let (name, text) = self.text(file)?;
+        if let Some(form) = Form::of_text(text) {
+            let root = Node { span: Span::new(0, text.len()), value: json::Value::Null };
+            return Some(Document { name, text, root, form });
+        }
+        let mut document = self.json(name, text)?;
+        document.form = Form::of_json(&document.root);
+        Some(document)
+    }
+
+    /// The text of a file, with its name.
+    fn text<'a>(&mut self, file: &'a SourceFile) -> Option<(&'a str, &'a str)> {
         let name = file.name.as_str();
         self.files.push(name.to_string());
         let bytes = match &file.bytes {
@@ -53,18 +74,41 @@ impl Findings {
                 return None;
             }
         };
-        let text = match std::str::from_utf8(bytes) {
-            Ok(text) => text,
+        match std::str::from_utf8(bytes) {
+            Ok(text) => Some((name, text)),
             Err(error) => {
                 self.not_utf8(name, bytes, error.valid_up_to());
-                return None;
+                None
             }
-        };
+        }
+    }
+
+    fn json<'a>(&mut self, name: &'a str, text: &'a str) -> Option<Document<'a>> {
         let (root, faults) = json::parse(text);
         for fault in faults {
             self.push(name, text, fault.span, fault.code, String::new(), fault.message, fault.hint);
         }
-        Some(Document { name, text, root: root? })
+        Some(Document { name, text, root: root?, form: Form::Own })
+    }
+
+    /// Adds a problem of a text that is no JSON, at a place in it.
+    pub(super) fn add_in_text(
+        &mut self,
+        file: &SourceFile,
+        text: &str,
+        span: Span,
+        code: Code,
+        message: String,
+        hint: &str,
+    ) {
+        self.files.push(file.name.clone());
+        self.push(&file.name, text, span, code, String::new(), message, Some(hint.to_string()));
+    }
+
+    /// Adds a problem of a file as a whole.
+    pub(super) fn add_in_file(&mut self, file: &SourceFile, code: Code, message: String, hint: &str) {
+        self.files.push(file.name.clone());
+        self.whole(&file.name, code, message, hint);
     }
 
     /// Adds a problem of a file as a whole.
@@ -95,6 +139,10 @@ impl Findings {
     /// Adds a problem of a value, shown at a place of its own, e.g. its key.
     pub(super) fn add_at(&mut self, place: &Place<'_>, span: Span, code: Code, message: String, hint: Option<String>) {
         let message = if place.path.is_empty() { message } else { format!("`{}`: {message}", place.path) };
+        let message = match place.document.form {
+            Form::Own => message,
+            form => format!("{message} (read as {})", form.name()),
+        };
         self.push(place.document.name, place.document.text, span, code, place.path.clone(), message, hint);
     }
 
@@ -220,6 +268,11 @@ impl<'a> Place<'a> {
     /// A part of the document's text.
     pub(super) fn source(&self, span: Span) -> &'a str {
         &self.document.text[span.range()]
+    }
+
+    /// Its path within the document, e.g. `modules[3].id`; empty for the whole.
+    pub(super) fn path(&self) -> &str {
+        &self.path
     }
 
     /// Name of the file.

@@ -18,11 +18,13 @@ mod diagnostics;
 mod document;
 mod excerpt;
 mod findings;
+mod form;
 mod json;
 mod layout;
 mod load_range_report;
 mod plan_document;
 mod read;
+mod rofi;
 mod schema;
 mod suggest;
 mod turn;
@@ -33,16 +35,20 @@ pub use certificate_document::CertificateDocument;
 pub use check_report::CheckReport;
 pub use codes::{CODES, Code};
 pub use diagnostics::{Diagnostic, Diagnostics};
-pub use document::{Checkable, LARGEST_FILE, NamedStructure, Problem, Resolve, SourceFile, Verifiable, no_references};
+pub use document::{
+    Checkable, LARGEST_FILE, LatticeProblem, LinkageProblem, NamedStructure, Problem, Resolve, SourceFile, Verifiable,
+    no_references,
+};
+pub use form::Form;
 pub use load_range_report::LoadRangeReport;
 pub use plan_document::{Contradiction, PlanDocument};
 pub use read::{
-    read_catalogue, read_certificate, read_checkable, read_configuration, read_plan, read_problem, read_structure,
-    read_verifiable,
+    read_catalogue, read_certificate, read_checkable, read_configuration, read_linkage, read_plan, read_problem,
+    read_structure, read_verifiable,
 };
 pub use schema::{schema, schema_names};
 pub use turn::AxisAngle;
 pub use write::{
-    Unwritable, in_space_because, write_certificate, write_check, write_configuration, write_load_range, write_plan,
-    write_structure,
+    Unwritable, in_space_because, write_catalogue, write_certificate, write_check, write_configuration, write_linkage,
+    write_load_range, write_plan, write_rofi, write_structure,
 };

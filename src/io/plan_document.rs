@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::document::Problem;
+use super::document::LatticeProblem;
 use super::turn::AxisAngle;
 use crate::reconfigure::{Plan, Report};
 
@@ -10,7 +10,7 @@ use crate::reconfigure::{Plan, Report};
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlanDocument {
     /// The problem, so that the file stands on its own.
-    pub problem: Problem,
+    pub problem: LatticeProblem,
     /// What the search answered.
     pub report: Report,
     /// Pivots of the file that contradict themselves, by plan and action. A plan with one
@@ -34,7 +34,7 @@ pub struct Contradiction {
 
 impl PlanDocument {
     /// What a search answered to a problem.
-    pub fn new(problem: Problem, report: &Report) -> Self {
+    pub fn new(problem: LatticeProblem, report: &Report) -> Self {
         Self { problem, report: report.clone(), contradictions: Vec::new() }
     }
 

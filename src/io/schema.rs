@@ -9,10 +9,20 @@ use serde_json::Value;
 use super::{layout, wire};
 
 /// The formats that have a schema.
-const NAMES: [&str; 8] =
-    ["structure", "catalogue", "configuration", "plan", "check", "load-range", "certificate", "errors"];
+const NAMES: [&str; 10] = [
+    "structure",
+    "catalogue",
+    "configuration",
+    "plan",
+    "check",
+    "load-range",
+    "certificate",
+    "errors",
+    "rofi-world",
+    "rofi-voxels",
+];
 
-static SCHEMAS: LazyLock<[Value; 8]> = LazyLock::new(|| {
+static SCHEMAS: LazyLock<[Value; 10]> = LazyLock::new(|| {
     [
         generate::<wire::Structure>(),
         generate::<wire::Catalogue>(),
@@ -22,6 +32,8 @@ static SCHEMAS: LazyLock<[Value; 8]> = LazyLock::new(|| {
         generate::<wire::LoadRange>(),
         generate::<wire::Certificate>(),
         generate::<wire::Errors>(),
+        generate::<wire::RofiWorld>(),
+        generate::<wire::VoxelWorld>(),
     ]
 });
 

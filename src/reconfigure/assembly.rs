@@ -5,7 +5,7 @@
 
 use nalgebra::Translation3;
 
-use crate::geometry::{BroadPhase, ContactPatch, Solid, TOUCH, contact, ground_contact};
+use crate::geometry::{ContactPatch, Solid, Surrounding, Surroundings, TOUCH, contact};
 use crate::robot::{Configuration, Face, FaceConnection, Occupancy, Placement};
 use crate::spatial::{Pose, Vec3};
 use crate::statics::{Anchor, Body, Connection, Connector, Contact, Load, Structure};
@@ -85,6 +85,15 @@ pub enum Touched {
     Obstacle(usize),
 }
 
+impl From<Surrounding> for Touched {
+    fn from(what: Surrounding) -> Self {
+        match what {
+            Surrounding::Ground => Self::Ground,
+            Surrounding::Obstacle(index) => Self::Obstacle(index),
+        }
+    }
+}
+
 /// A structure with the way back to the robot. Body i is module i.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Assembly {
@@ -108,7 +117,7 @@ pub struct Assembler<'a> {
     connectors: Vec<Connector>,
     /// How two module types meet, by first times the number of types plus second.
     surfaces: Vec<Surface>,
-    obstacles: BroadPhase,
+    surroundings: Surroundings,
 }
 
 /// The structure of a configuration as it stands.
@@ -134,7 +143,7 @@ impl<'a> Assembler<'a> {
             pitch,
             connectors: catalogue.connectors.iter().map(|c| full_face(c, pitch)).collect(),
             surfaces,
-            obstacles: BroadPhase::new(configuration.environment.obstacles.iter().map(Solid::from).collect()),
+            surroundings: Surroundings::new(&configuration.environment),
         }
     }
 
@@ -267,16 +276,9 @@ impl<'a> Assembler<'a> {
                 continue;
             }
             let solid = self.solid(module, poses);
-            if let Some(ground) = &self.configuration.environment.ground
-                && let Some(patch) = ground_contact(&solid, ground.height, tolerance)
-            {
-                add_contacts(assembly, module, Touched::Ground, ground.friction, patch);
-            }
-            for (index, obstacle) in self.obstacles.near(&solid, tolerance) {
-                if let Some(patch) = contact(&solid, obstacle, tolerance) {
-                    let friction = self.configuration.environment.obstacles[index].friction;
-                    add_contacts(assembly, module, Touched::Obstacle(index), friction, patch);
-                }
+            for (what, patch) in self.surroundings.contacts(&solid, tolerance) {
+                let friction = what.friction(&self.configuration.environment);
+                add_contacts(assembly, module, what.into(), friction, patch);
             }
         }
     }

@@ -100,7 +100,7 @@ fn ground_and_obstacles_carry_free_modules_only() {
     let mut configuration = connected(0, &[[0, 0, 0], [1, 0, 0]]);
     configuration.environment.ground = Some(Ground { height: 0.0, friction: 0.8 });
     configuration.environment.obstacles = vec![Obstacle {
-        shape: Shape::Cuboid { half_extents: Vec3::new(0.025, 0.01, 0.1) },
+        shape: Shape::Cuboid { half_extents: Vec3::new(0.025, 0.01, 0.1) }.into(),
         pose: Pose::translation(0.125, 0.025, 0.1),
         friction: 0.6,
     }];

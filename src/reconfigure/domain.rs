@@ -3,7 +3,7 @@
 
 use planners::Width;
 
-use crate::geometry::{BroadPhase, Solid, Surroundings, TOUCH, first_collision};
+use crate::geometry::{Solid, Surroundings, TOUCH};
 use crate::robot::{Cell, Placement, Shape};
 use crate::spatial::{Pose, Rotation, Vec3};
 use crate::statics::Bracket;
@@ -24,7 +24,6 @@ pub struct Domain<'a> {
     /// Whether states must be stable at all.
     pub stability: bool,
     surroundings: Surroundings,
-    obstacles: BroadPhase,
     pitch: f64,
     /// Whether a module of this type does not hit ground or obstacles.
     clear: Memo<(Move, usize), bool>,
@@ -38,16 +37,11 @@ impl<'a> Domain<'a> {
     /// Prepares for questions about a problem's states.
     pub fn new(problem: &'a Problem, stability: bool) -> Self {
         let start = problem.start();
-        let surroundings = Surroundings {
-            solids: start.environment.obstacles.iter().map(Solid::from).collect(),
-            ground: start.environment.ground.as_ref().map(|ground| ground.height),
-        };
         Self {
             problem,
             oracle: Oracle::new(start),
             stability,
-            obstacles: BroadPhase::new(surroundings.solids.clone()),
-            surroundings,
+            surroundings: Surroundings::new(&start.environment),
             pitch: start.pitch(),
             clear: Memo::new(),
             at_rest: Memo::new(),
@@ -70,7 +64,7 @@ impl<'a> Domain<'a> {
             let shape = self.problem.start().catalogue.module_types[module_type].body().shape.clone();
             // A cube sweeps the same room in every orientation.
             let solid = Solid::new(shape, Placement::new(step.from).pose(self.pitch));
-            first_collision(&solid, &motion(step, self.pitch), &self.surroundings).is_none()
+            self.surroundings.first_collision(&solid, &motion(step, self.pitch)).is_none()
         })
     }
 
@@ -131,8 +125,7 @@ impl<'a> Domain<'a> {
         half_extents[axis.axis()] += 2.0 * tolerance;
         let centre = (low + high) / 2.0;
         let room = Solid::new(Shape::Cuboid { half_extents }, Pose::from_parts(centre.into(), Rotation::identity()));
-        self.surroundings.ground.is_some_and(|height| centre.z - half_extents.z <= height)
-            || !self.obstacles.near(&room, 0.0).is_empty()
+        self.surroundings.may_touch(&room)
     }
 
     /// Margin of a move out of a state with these connections: of all its

@@ -7,10 +7,10 @@ use petgraph::unionfind::UnionFind;
 use crate::spatial::{Pose, Vec3};
 
 use super::catalogue::Catalogue;
+use super::environment::Environment;
 use super::lattice::{Face, Placement};
 use super::module_type::ModuleType;
 use super::occupancy::{Occupancy, connection};
-use super::shape::Shape;
 
 /// A module of a configuration.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,37 +51,6 @@ impl FaceConnection {
     pub fn modules(&self) -> [usize; 2] {
         self.ports.map(|port| port.module)
     }
-}
-
-/// Horizontal frictional ground, filling everything below its height.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Ground {
-    /// z of its surface in m.
-    pub height: f64,
-    /// Friction coefficient.
-    pub friction: f64,
-}
-
-/// An immovable solid: modules collide with it and rest on it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Obstacle {
-    /// Its shape.
-    pub shape: Shape,
-    /// Its pose in W.
-    pub pose: Pose,
-    /// Friction coefficient of its surface.
-    pub friction: f64,
-}
-
-/// What surrounds the robot.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Environment {
-    /// The ground, if there is one.
-    pub ground: Option<Ground>,
-    /// Further solids.
-    pub obstacles: Vec<Obstacle>,
-    /// Friction coefficient between unconnected modules.
-    pub module_friction: f64,
 }
 
 /// An external wrench that stays on a module wherever it goes.

@@ -3,7 +3,7 @@
 
 use std::collections::HashMap;
 
-use super::configuration::{Configuration, Environment, FaceConnection, ModuleLoad, Port};
+use super::configuration::{Configuration, FaceConnection, ModuleLoad, Port};
 use super::lattice::neighbour;
 use super::problem::{Fault, Findings, Part, Problem};
 
@@ -90,24 +90,6 @@ impl Configuration {
             self.catalogue.module_types.get(t).is_some_and(|t| t.cell().face < self.catalogue.connectors.len())
         });
         !known || self.catalogue.face_connector(types[0], types[1]).is_some()
-    }
-}
-
-impl Environment {
-    /// Adds everything that is wrong with the environment.
-    pub(super) fn check(&self, findings: &mut Findings) {
-        findings.not_negative(Part::Environment, "module_friction", &[self.module_friction]);
-        if let Some(ground) = &self.ground {
-            findings.finite(Part::Ground, "height", &[ground.height]);
-            findings.not_negative(Part::Ground, "friction", &[ground.friction]);
-        }
-        for (i, obstacle) in self.obstacles.iter().enumerate() {
-            let part = Part::Obstacle(i);
-            obstacle.shape.check(findings, part);
-            findings.finite(part, "position", obstacle.pose.translation.vector.as_slice());
-            findings.finite(part, "rotation", obstacle.pose.rotation.coords.as_slice());
-            findings.not_negative(part, "friction", &[obstacle.friction]);
-        }
     }
 }
 

@@ -10,6 +10,8 @@ mod catalogue;
 mod catalogue_check;
 mod configuration;
 mod configuration_check;
+mod environment;
+mod hull;
 mod lattice;
 pub mod linkage;
 mod module_type;
@@ -17,16 +19,18 @@ mod module_type_check;
 mod occupancy;
 mod problem;
 mod shape;
+mod terrain;
 #[cfg(test)]
 mod tests;
 
-pub use built_in::BUILT_IN;
+pub use built_in::{BUILT_IN, rofi};
 pub use catalogue::Catalogue;
-pub use configuration::{
-    Configuration, Environment, FaceConnection, Goal, Ground, Matching, Module, ModuleLoad, Obstacle, Port, Requirement,
-};
+pub use configuration::{Configuration, FaceConnection, Goal, Matching, Module, ModuleLoad, Port, Requirement};
+pub use environment::{Environment, Ground, Obstacle};
+pub use hull::{Hull, HullFace};
 pub use lattice::{Cell, Face, Orientation, Placement, neighbour};
 pub use module_type::{BodyType, JointType, LatticeType, ModuleType, PortPlace, PortType};
 pub use occupancy::Occupancy;
 pub use problem::{Fault, Part, Problem};
-pub use shape::Shape;
+pub use shape::{LARGEST, Shape, ShapeFault};
+pub use terrain::{HeightField, MOST_HEIGHTS, MOST_TRIANGLES, Mesh, Terrain};

@@ -82,7 +82,8 @@ pub enum PortPlace {
         /// Pose of the port's frame in the body frame: z outwards, x the direction that
         /// angles of engagement are counted from.
         frame: Pose,
-        /// At how many angles, equally spaced over a turn, it engages with another port at a point.
+        /// At how many angles, equally spaced over a turn, it engages with another port at a point; 0 for
+        /// one that engages with surfaces only.
         orientations: u32,
     },
     /// Anywhere on the body's surface, which is a ball.
@@ -118,6 +119,13 @@ pub struct LatticeType {
     pub slide: bool,
     /// Whether it can pivot about an edge shared with a neighbour.
     pub pivot: bool,
+}
+
+impl PortType {
+    /// Whether it is at a point rather than on a surface.
+    pub const fn is_point(&self) -> bool {
+        matches!(self.place, PortPlace::Point { .. })
+    }
 }
 
 /// A kind of module: bodies, joints between them, and ports.

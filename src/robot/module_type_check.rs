@@ -63,10 +63,9 @@ impl ModuleType {
             findings.add(part, "connector", Fault::PatchWithoutFace);
         }
         match &port.place {
-            PortPlace::Point { frame, orientations } => {
+            PortPlace::Point { frame, .. } => {
                 findings.finite(part, "position", frame.translation.vector.as_slice());
                 findings.finite(part, "axis", frame.rotation.coords.as_slice());
-                findings.positive(part, "orientations", &[f64::from(*orientations)]);
             }
             PortPlace::Surface if known => {
                 if self.bodies[port.body].shape.ball_radius().is_none() {

@@ -118,7 +118,7 @@ fn problems_after(change: impl FnOnce(&mut Configuration)) -> Vec<Problem> {
     let mut configuration = robot(&SQUARE);
     configuration.environment.ground = Some(Ground { height: 0.0, friction: 0.5 });
     configuration.environment.obstacles = vec![Obstacle {
-        shape: Shape::Cuboid { half_extents: Vec3::repeat(0.1) },
+        shape: Shape::Cuboid { half_extents: Vec3::repeat(0.1) }.into(),
         pose: Pose::translation(1.0, 0.0, 0.1),
         friction: 0.5,
     }];
@@ -148,7 +148,9 @@ fn every_fault_of_a_configuration_is_found_where_it_is() {
             one(Part::Ground, "friction", Fault::Negative),
         ),
         (
-            Box::new(|c| c.environment.obstacles[0].shape = Shape::Cuboid { half_extents: Vec3::new(1.0, 0.0, 1.0) }),
+            Box::new(|c| {
+                c.environment.obstacles[0].shape = Shape::Cuboid { half_extents: Vec3::new(1.0, 0.0, 1.0) }.into()
+            }),
             one(Part::Obstacle(0), "half_extents", Fault::NotPositive),
         ),
         (

@@ -1,7 +1,7 @@
 //! The oracle: cuts a structure into blocks, answers for each, and puts the
 //! answers together.
 
-use crate::spatial::Twist;
+use crate::spatial::{Twist, Wrench};
 
 use super::answer::Answer;
 use super::assessment::{Assessment, Question};
@@ -68,6 +68,9 @@ pub(super) trait Knowledge {
     /// What can be said about a block with cycles without solving it.
     fn bound(&mut self, structure: &Structure, block: &Block, loads: &[BodyLoad]) -> Option<Part>;
 
+    /// Takes note of the wrench, in its frame, of the only link of a block.
+    fn note_bridge(&mut self, link: Link, wrench: &Wrench);
+
     /// Takes note of the answer for a block with cycles.
     fn note(&mut self, block: &Block, part: &Part);
 
@@ -82,6 +85,8 @@ impl Knowledge for Unknown {
     fn bound(&mut self, _: &Structure, _: &Block, _: &[BodyLoad]) -> Option<Part> {
         None
     }
+
+    fn note_bridge(&mut self, _: Link, _: &Wrench) {}
 
     fn note(&mut self, _: &Block, _: &Part) {}
 
@@ -126,7 +131,9 @@ fn assess_pieces(
     let (bridges, cyclic): (Vec<usize>, Vec<usize>) =
         (0..pieces.blocks.len()).partition(|&i| reductions.closed_form && pieces.blocks[i].links.len() == 1);
     for index in bridges {
-        answer.add_bridge(index, &assess_bridge(structure, &pieces.blocks[index], &loads));
+        let bridge = assess_bridge(structure, &pieces.blocks[index], &loads);
+        knowledge.note_bridge(pieces.blocks[index].links[0], &bridge.wrench);
+        answer.add_bridge(index, &bridge);
     }
     let mut open = Vec::new();
     for index in cyclic {

@@ -10,9 +10,11 @@ use super::balance::{idle_contacts, restore, wrenches};
 use super::blocks::Block;
 use super::bracket::Problem;
 use super::clusters::Clusters;
+use super::collapse::is_quick;
 use super::conic::Iterate;
 use super::locked::AtRest;
 use super::reductions::Reductions;
+use super::structure::Structure;
 
 /// Shares of a safely admissible twist field that are mixed into a tight but
 /// inadmissible one.
@@ -38,10 +40,12 @@ pub(super) struct Best {
     pub reductions: Reductions,
     /// What another part of the structure needs at least.
     pub elsewhere: f64,
+    /// Whether it is asked for at once if any strength helps: it costs next to nothing.
+    pub may_fall: bool,
 }
 
 impl Best {
-    pub(super) fn new(block: &Block, elsewhere: f64, reductions: Reductions) -> Self {
+    pub(super) fn new(structure: &Structure, block: &Block, elsewhere: f64, reductions: Reductions) -> Self {
         Self {
             lower: 0.0,
             upper: f64::INFINITY,
@@ -53,6 +57,7 @@ impl Best {
             restrictions: Vec::new(),
             reductions,
             elsewhere,
+            may_fall: is_quick(structure, block),
         }
     }
 

@@ -52,8 +52,15 @@ impl Problem<'_> {
         &self,
         field: &[Wrench],
         twists: Option<&[Twist]>,
-        mut demand: impl FnMut(Link, &Connector, &Wrench, &WrenchError) -> f64,
+        demand: impl FnMut(Link, &Connector, &Wrench, &WrenchError) -> f64,
     ) -> Option<(f64, Vec<f64>)> {
+        let charge = self.charge(field, twists)?;
+        let demands = self.demands(field, demand)?;
+        Some((demands.iter().copied().fold(0.0, f64::max) + charge, demands))
+    }
+
+    /// What the imbalance of `field` is charged with in `twists`; `None` where it is too large.
+    fn charge(&self, field: &[Wrench], twists: Option<&[Twist]>) -> Option<f64> {
         let Self { structure, block, program, .. } = self;
         let mut charge = 0.0;
         let through = self.forces_through(field);
@@ -71,6 +78,17 @@ impl Problem<'_> {
                 v.power(lacking).abs() + (v.linear.norm() + v.angular.norm() * lever) * unknown
             });
         }
+        Some(charge)
+    }
+
+    /// The utilisation of each link in `field` as `demand` has it, 0 for contacts. `None` where one
+    /// is infinite or a force leaves its friction cone.
+    pub(super) fn demands(
+        &self,
+        field: &[Wrench],
+        mut demand: impl FnMut(Link, &Connector, &Wrench, &WrenchError) -> f64,
+    ) -> Option<Vec<f64>> {
+        let Self { structure, block, program, .. } = self;
         let mut demands = Vec::with_capacity(field.len());
         for (l, (&link, wrench)) in block.links.iter().zip(field).enumerate() {
             match link {
@@ -94,7 +112,7 @@ impl Problem<'_> {
                 }
             }
         }
-        Some((demands.iter().copied().fold(0.0, f64::max) + charge, demands))
+        Some(demands)
     }
 
     /// Sum of the sizes of all forces on every body of the block.

@@ -53,9 +53,10 @@ const ATTEMPTS: [Attempt; 4] = [
     Attempt { tolerance: 1e-11, inset: 0.0, regularization: 1e-9 },
 ];
 
-/// Whether looking for a mechanism costs next to nothing beside solving the block.
+/// Whether there may be a mechanism, and looking for it costs next to nothing beside solving the block.
 pub(super) fn is_quick(structure: &Structure, block: &Block) -> bool {
-    QUICK * rigid_clusters(structure, block).count() <= block.bodies.len()
+    let clusters = rigid_clusters(structure, block).count();
+    clusters > 0 && QUICK * clusters <= block.bodies.len()
 }
 
 /// What any strength at all would let move as one.

@@ -23,15 +23,18 @@ pub(super) struct Side {
 }
 
 impl Side {
-    /// For a body at `com` whose balance rows are scaled by `factor`.
-    pub(super) fn new(frame: &LinkFrame, body: usize, sign: f64, com: &Vec3, factor: &[f64]) -> Self {
-        let lever = (frame.origin - com).cross_matrix() * frame.axes;
+    /// For a body at `com` whose force and torque balances are scaled by `factor`.
+    pub(super) fn new(frame: &LinkFrame, body: usize, sign: f64, com: &Vec3, factor: [f64; 2]) -> Self {
+        let [force, torque] = factor.map(|factor| sign * factor);
+        let arm = frame.origin - com;
         let mut map = Matrix6::zeros();
-        map.fixed_view_mut::<3, 3>(0, 0).copy_from(&frame.axes);
-        map.fixed_view_mut::<3, 3>(3, 0).copy_from(&lever);
-        map.fixed_view_mut::<3, 3>(3, 3).copy_from(&frame.axes);
-        for (row, factor) in factor.iter().enumerate() {
-            map.row_mut(row).scale_mut(sign * factor);
+        for (k, axis) in frame.axes.column_iter().enumerate() {
+            let lever = arm.cross(&axis);
+            for r in 0..3 {
+                map[(r, k)] = axis[r] * force;
+                map[(r + 3, k)] = lever[r] * torque;
+                map[(r + 3, k + 3)] = axis[r] * torque;
+            }
         }
         Self { body, sign, map }
     }

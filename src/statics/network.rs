@@ -16,7 +16,7 @@ use super::chains::{Between, Chain, End, Passage, incident, walk, within_chains}
 use super::maps::Side;
 use super::program::Program;
 use super::series::{Stacked, inverse};
-use super::stiffness::Stiffness;
+use super::stiffness::{Matrix, Stiffness};
 
 /// Loads with the bodies in chains eliminated.
 #[derive(Default)]
@@ -41,12 +41,21 @@ impl<const D: usize> Condensed<D> {
     }
 }
 
+/// A link that is no part of a chain.
+struct Single<const D: usize> {
+    link: usize,
+    /// The junctions at its ends, in the order of elimination.
+    ends: [End<D>; 2],
+    /// Blocks of the matrix: of the first end, of the second, and the rows of the second
+    /// by the columns of the first.
+    slots: [Option<usize>; 3],
+}
+
 /// The links of a block as springs.
 pub(super) struct Network<const D: usize> {
     /// Number of each body among the junctions.
     junction: Vec<Option<usize>>,
-    /// Links that are no part of a chain, with the junctions at their ends.
-    singles: Vec<(usize, [End<D>; 2])>,
+    singles: Vec<Single<D>>,
     chains: Vec<Chain<D>>,
     matrix: Stiffness<D>,
 }
@@ -68,23 +77,27 @@ impl Network<6> {
             })
             .collect();
         let mut used = vec![false; program.sides.len()];
-        let (mut chains, mut singles) = (Vec::new(), Vec::new());
+        let (mut chains, mut singles) = (Vec::new(), Vec::with_capacity(program.sides.len()));
         for (link, sides) in program.sides.iter().enumerate() {
             // Begin where a chain begins: at a junction or the ground.
             let ends = sides.each_ref().map(|side| side.as_ref().is_none_or(|s| junction[s.body].is_some()));
             match ends {
                 [true, true] => {
-                    let end = |side: &Option<Side>| side.and_then(|s| Some((junction[s.body]?, s.map)));
-                    singles.push((link, sides.each_ref().map(end)));
+                    let end = |side: &Option<Side>| side.as_ref().and_then(|s| Some((junction[s.body]?, s.map)));
+                    singles.push(Single { link, ends: sides.each_ref().map(end), slots: [None; 3] });
                 }
                 [false, false] => {}
                 _ if used[link] => {}
                 [start, _] => chains.push(walk(program, &junction, &incident, &mut used, link, usize::from(!start))),
             }
         }
-        let joined = chains.iter().map(|chain| chain.ends.map(|end| end.map(|(at, _)| at)));
-        let pairs = singles.iter().map(|(_, ends)| ends.map(|end| end.map(|(at, _)| at))).chain(joined);
+        let junctions = |ends: &[End<6>; 2]| ends.each_ref().map(|end| end.as_ref().map(|(at, _)| *at));
+        let joined = chains.iter().map(|chain| junctions(&chain.ends));
+        let pairs = singles.iter().map(|single| junctions(&single.ends)).chain(joined);
         let matrix = Stiffness::new(count, pairs.filter_map(|[a, b]| Some((a?, b?))));
+        for single in &mut singles {
+            single.place(&matrix);
+        }
         Self { junction, singles, chains, matrix }
     }
 
@@ -92,19 +105,62 @@ impl Network<6> {
     /// `flexibility` the root G of its inverse, `K G G' = 1`.
     pub(super) fn factorise(&mut self, stiffness: &[Matrix6<f64>], flexibility: impl Fn(usize) -> Matrix6<f64>) {
         self.matrix.clear();
-        for (link, ends) in &self.singles {
-            let stiffness = stiffness[*link];
-            let force = |end: &End<6>| end.map(|(at, map)| (at, map, map * stiffness));
-            let [one, other] = [force(&ends[0]), force(&ends[1])];
-            for (at, map, force) in [one, other].iter().flatten() {
-                self.matrix.add(*at, *at, &(force * map.transpose()).data.0);
-            }
-            if let (Some((i, map, _)), Some((j, _, force))) = (one, other) {
-                self.matrix.add(j, i, &(force * map.transpose()).data.0);
+        for Single { link, ends, slots } in &self.singles {
+            let force = |end: &End<6>| end.as_ref().map(|(_, map)| force(map, &stiffness[*link]));
+            let forces = ends.each_ref().map(force);
+            for (slot, [row, column]) in slots.iter().zip([[0, 0], [1, 1], [1, 0]]) {
+                if let (Some(slot), Some(force), Some((_, map))) = (slot, &forces[row], &ends[column]) {
+                    add_stiffness(self.matrix.block(*slot), force, map);
+                }
             }
         }
         self.add_chains(flexibility);
         self.matrix.factorise();
+    }
+}
+
+impl<const D: usize> Single<D> {
+    /// Puts its ends into the order of elimination, and notes its places in the matrix.
+    fn place(&mut self, matrix: &Stiffness<D>) {
+        let junctions = |ends: &[End<D>; 2]| ends.each_ref().map(|end| end.as_ref().map(|(at, _)| *at));
+        if let [Some(one), Some(other)] = junctions(&self.ends)
+            && matrix.precedes(other, one)
+        {
+            self.ends.swap(0, 1);
+        }
+        let [one, other] = junctions(&self.ends);
+        let slot = |row: Option<usize>, column: Option<usize>| Some(matrix.slot(row?, column?));
+        self.slots = [slot(one, one), slot(other, other), slot(other, one)];
+    }
+}
+
+/// `map stiffness`, by columns; torques in the link's frame push no body.
+fn force(map: &Matrix6<f64>, stiffness: &Matrix6<f64>) -> Matrix<6> {
+    let (map, mut force) = (&map.data.0, [[0.0; 6]; 6]);
+    for (column, stiffness) in force.iter_mut().zip(&stiffness.data.0) {
+        for k in 0..3 {
+            for r in 0..6 {
+                column[r] += map[k][r] * stiffness[k];
+            }
+        }
+        for k in 3..6 {
+            for r in 3..6 {
+                column[r] += map[k][r] * stiffness[k];
+            }
+        }
+    }
+    force
+}
+
+/// `block += force map'`.
+fn add_stiffness(block: &mut Matrix<6>, force: &Matrix<6>, map: &Matrix6<f64>) {
+    let map = &map.data.0;
+    for (c, column) in block.iter_mut().enumerate() {
+        for k in 0..if c < 3 { 3 } else { 6 } {
+            for r in 0..6 {
+                column[r] += force[k][r] * map[k][c];
+            }
+        }
     }
 }
 

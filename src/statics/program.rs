@@ -231,7 +231,7 @@ impl Program {
                 frame.sides().map(|(side, sign)| {
                     let i = local_body(block, side)?;
                     let com = &structure.bodies[block.bodies[i]].com;
-                    Some(Side::new(frame, i, sign, com, &row_factor[6 * i..6 * i + 6]))
+                    Some(Side::new(frame, i, sign, com, [row_factor[6 * i], row_factor[6 * i + 3]]))
                 })
             })
             .collect();

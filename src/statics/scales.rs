@@ -8,6 +8,8 @@
 
 use std::collections::VecDeque;
 
+use smallvec::SmallVec;
+
 use crate::spatial::Wrench;
 
 use super::blocks::{Block, Vertex};
@@ -25,10 +27,13 @@ const NOTHING: f64 = 1e-15;
 /// enough for the program, and little enough for the accuracy of its balance.
 const PASSED_ON: f64 = 1e-3;
 
+/// The links at a body, each with the body at its other end.
+type Neighbours = SmallVec<[(usize, Option<usize>); 4]>;
+
 /// Gives every body that holds nothing of its own a share of the force of the neighbour
 /// it would pass least on for: a body without weight between two with weight carries at
 /// most as much as the lighter one. Those that hold something, or have no such neighbour, get `least`.
-fn pass_through(force: &mut [f64], largest: f64, least: f64, neighbours: &[Vec<(usize, Option<usize>)>]) {
+fn pass_through(force: &mut [f64], largest: f64, least: f64, neighbours: &[Neighbours]) {
     let passing: Vec<usize> = (0..force.len()).filter(|&i| !(force[i] > NOTHING * largest)).collect();
     for &i in &passing {
         force[i] = 0.0;
@@ -85,7 +90,7 @@ impl Scales {
         let count = block.bodies.len();
         let com = |i: usize| structure.bodies[block.bodies[i]].com;
         let mut lever = vec![0.0_f64; count];
-        let mut neighbours: Vec<Vec<(usize, Option<usize>)>> = vec![Vec::new(); count];
+        let mut neighbours: Vec<Neighbours> = vec![SmallVec::new(); count];
         let mut queue = VecDeque::new();
         let mut parent: Vec<Option<(usize, Option<usize>)>> = vec![None; count];
         let mut seen = vec![false; count];
@@ -152,7 +157,7 @@ mod tests {
     use super::*;
 
     /// A row of bodies, each linked to the next.
-    fn row(count: usize) -> Vec<Vec<(usize, Option<usize>)>> {
+    fn row(count: usize) -> Vec<Neighbours> {
         let beside = |i: usize| {
             let before = i.checked_sub(1).map(|j| (j, Some(j)));
             before.into_iter().chain((i + 1 < count).then_some((i, Some(i + 1)))).collect()

@@ -34,6 +34,9 @@ const WORTHWHILE: f64 = 0.5;
 /// Scaled imbalance from which on an iterate's forces may prove an upper bound.
 const BALANCED: f64 = 1e-6;
 
+/// Scaled imbalance up to which that is worth a try where only the motion is of use so far.
+const NEARLY_BALANCED: f64 = 1e-2;
+
 /// Errors below which an iterate is worth proving bounds from in the end, and the
 /// growth beyond the least one after which the iteration ends.
 const USEFUL: f64 = 1e-2;
@@ -87,13 +90,13 @@ pub(super) fn assess_block(
     }
     let program = Program::new(structure, block, loads, Purpose::Utilisation);
     let problem = Problem { structure, block, loads, program: &program };
-    let mut best = Best::new(block, elsewhere, reductions);
+    let mut best = Best::new(structure, block, elsewhere, reductions);
     // Where supports face each other, begin with the attempt that bounds forces.
     let first = usize::from(faces_itself(&problem));
     let inset = ATTEMPTS[first].inset;
     let mut rung = best.iterate(&problem, &program, inset, NEAR, question);
     if best.upper.is_infinite()
-        && (!best.answers(question) || collapse::is_quick(structure, block))
+        && (!best.answers(question) || best.may_fall)
         && let Some(mechanism) = collapse::find(structure, block, loads)
     {
         return Part::Collapses { mechanism, decided_by: Rung::Solved };
@@ -220,6 +223,11 @@ impl Best {
             }
             if self.answers(question) {
                 let iterate = method.iterate().measured(program, problem.program);
+                // That strength is all it lacks is sooner shown by forces than by looking in
+                // vain for a motion that no strength holds.
+                if self.may_fall && self.upper.is_infinite() && estimate.imbalance <= NEARLY_BALANCED {
+                    self.keep_upper(problem, &iterate, 0.0);
+                }
                 self.unproved = Some((wrenches(problem.program, &iterate), problem.program.twists(&iterate.v)));
                 return Rung::StoppedEarly;
             }

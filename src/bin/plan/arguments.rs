@@ -97,6 +97,8 @@ pub enum Command {
     /// at its ends
     #[command(after_help = RANGE_EXIT_CODES)]
     LoadRange(LoadRangeArguments),
+    /// Write a robot in another format: a configuration/1 file, or one of the RoFI platform's
+    Convert(ConvertArguments),
     /// Print the JSON Schema of a format, or the names of all formats
     Schema(SchemaArguments),
 }
@@ -182,6 +184,34 @@ fn margin_to_leave(text: &str) -> Result<f64, String> {
 pub struct VerifyArguments {
     /// A plan/1 or certificate/1 file; `-` reads standard input
     pub file: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub struct ConvertArguments {
+    /// A configuration/1 file, or a JSON world, text or voxels of the RoFI platform; `-` reads standard input
+    pub input: PathBuf,
+    /// File to write [default: standard output]
+    #[arg(required_unless_present = "to")]
+    pub output: Option<PathBuf>,
+    /// Format to write [default: rofi-text for .rofi and .in, otherwise configuration]
+    #[arg(long, value_enum, value_name = "FORMAT")]
+    pub to: Option<RobotFormat>,
+    /// Leave out what surrounds the robot: gravity, ground, obstacles, loads, and that modules are fixed
+    #[arg(long)]
+    pub robot_only: bool,
+}
+
+/// `--to`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum RobotFormat {
+    /// This program's own format, configuration/1
+    Configuration,
+    /// A JSON world of the RoFI platform
+    RofiJson,
+    /// Text of the RoFI platform
+    RofiText,
+    /// Voxels of the RoFI platform
+    RofiVoxel,
 }
 
 #[derive(Debug, Args)]

@@ -32,6 +32,7 @@ pub fn run(arguments: &CheckArguments) -> io::Result<Exit> {
     let named = match read_checkable(&file, &files::resolve) {
         Ok(Checkable::Structure(named)) => named,
         Ok(Checkable::Configuration(configuration)) => NamedStructure::of_configuration(&configuration),
+        Ok(Checkable::Linkage(linkage)) => NamedStructure::of_linkage(&linkage),
         Err(diagnostics) => return output::bad_input(&diagnostics, arguments.json),
     };
     let clock = Instant::now();

@@ -5,8 +5,7 @@ use std::io;
 use std::time::Instant;
 
 use steadfast::io::{Checkable, LoadRangeReport, NamedStructure, read_checkable, write_load_range};
-use steadfast::robot::Configuration;
-use steadfast::spatial::Vec3;
+use steadfast::spatial::{Point, Pose, Vec3};
 use steadfast::statics::{LoadRange, RangeEnd, UnitForce, Verdict, load_range};
 
 use crate::arguments::LoadRangeArguments;
@@ -20,19 +19,20 @@ use crate::{files, output};
 /// The output cannot be written.
 pub fn run(arguments: &LoadRangeArguments) -> io::Result<Exit> {
     let file = files::read(&arguments.file);
-    let (named, configuration) = match read_checkable(&file, &files::resolve) {
-        Ok(Checkable::Structure(named)) => (named, None),
-        Ok(Checkable::Configuration(configuration)) => {
-            (NamedStructure::of_configuration(&configuration), Some(configuration))
-        }
+    let (named, frames) = match read_checkable(&file, &files::resolve) {
+        Ok(checkable) => framed(checkable),
         Err(diagnostics) => return output::bad_input(&diagnostics, arguments.json),
     };
-    let Some(body) = named.bodies.iter().position(|id| *id == arguments.module) else {
+    // Of a module of several bodies, which are called `module.body`, the first one.
+    let first_of = format!("{}.", arguments.module);
+    let named_so = |id: &String| *id == arguments.module;
+    let body = named.bodies.iter().position(named_so);
+    let Some(body) = body.or_else(|| named.bodies.iter().position(|id| id.starts_with(&first_of))) else {
         let ids: Vec<&str> = named.bodies.iter().map(String::as_str).collect();
         let problem = format!("there is no module or body `{}`; there are {}", arguments.module, listed(&ids));
         return output::refused(&file.name, [problem], arguments.json);
     };
-    let at = arguments.at.map(|at| in_world(configuration.as_ref(), body, at.into()));
+    let at = arguments.at.map(|at| in_world(frames.get(body), at.into()));
     let force = UnitForce { body, direction: arguments.direction.into(), at };
     let clock = Instant::now();
     let range = match load_range(&named.structure, &force, 1.0 - arguments.margin) {
@@ -63,12 +63,25 @@ pub fn run(arguments: &LoadRangeArguments) -> io::Result<Exit> {
     })
 }
 
-/// A point of a module in the world; a structure's points are there already.
-fn in_world(configuration: Option<&Configuration>, module: usize, at: Vec3) -> Vec3 {
-    configuration.map_or(at, |configuration| {
-        let pose = configuration.pose(module);
-        pose.rotation * at + pose.translation.vector
-    })
+/// The structure of what was read, with the poses of its bodies' frames in W; of a structure, whose points are
+/// in W already, none.
+fn framed(checkable: Checkable) -> (NamedStructure, Vec<Pose>) {
+    match checkable {
+        Checkable::Structure(named) => (named, Vec::new()),
+        Checkable::Configuration(configuration) => {
+            let frames = (0..configuration.modules.len()).map(|module| configuration.pose(module)).collect();
+            (NamedStructure::of_configuration(&configuration), frames)
+        }
+        Checkable::Linkage(linkage) => {
+            let frames = (0..linkage.modules.len()).flat_map(|module| linkage.body_poses(module)).collect();
+            (NamedStructure::of_linkage(&linkage), frames)
+        }
+    }
+}
+
+/// A point given in a body's frame, in W.
+fn in_world(frame: Option<&Pose>, at: Vec3) -> Vec3 {
+    frame.map_or(at, |frame| (frame * Point::from(at)).coords)
 }
 
 fn told(named: &NamedStructure, report: &LoadRangeReport<'_>) -> String {

@@ -6,7 +6,7 @@ use std::process;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use steadfast::io::{PlanDocument, Problem, read_problem, write_plan};
+use steadfast::io::{LatticeProblem, PlanDocument, Problem, read_problem, write_plan};
 use steadfast::reconfigure::replay::{Replay, replay};
 use steadfast::reconfigure::{Event, Objective, Options, Outcome, Reduction, Refusal, Report, solve};
 
@@ -25,7 +25,11 @@ const INTERRUPTED: i32 = 130;
 /// The output cannot be written.
 pub fn run(arguments: &PlanningArguments) -> io::Result<Exit> {
     let problem = match read(arguments)? {
-        Ok(problem) => problem,
+        Ok(Problem::Lattice(problem)) => problem,
+        Ok(Problem::Linkage(_)) => {
+            let file = arguments.start.display().to_string();
+            return output::refused(&file, ["no plans for linkages yet".to_string()], arguments.json);
+        }
         Err(exit) => return Ok(exit),
     };
     let report = match search(arguments, &problem) {
@@ -85,7 +89,7 @@ fn read(arguments: &PlanningArguments) -> io::Result<Result<Problem, Exit>> {
 }
 
 /// Searches in a pool of the wanted size, until done, out of time, or interrupted.
-fn search(arguments: &PlanningArguments, problem: &Problem) -> Result<Result<Report, Refusal>, String> {
+fn search(arguments: &PlanningArguments, problem: &LatticeProblem) -> Result<Result<Report, Refusal>, String> {
     let options = Options {
         objective: match arguments.objective {
             ObjectiveArgument::Margin => Objective::Margin,
@@ -121,7 +125,7 @@ fn cancelled_by_interrupt() -> Result<Arc<AtomicBool>, String> {
 }
 
 /// Replays the plan, if there is one, by the code that shares no decision with the search.
-fn check(problem: &Problem, report: &Report) -> Result<Option<Replay>, Refusal> {
+fn check(problem: &LatticeProblem, report: &Report) -> Result<Option<Replay>, Refusal> {
     let required = report.required.unwrap_or(problem.start.require.margin);
     report.plan.as_ref().map(|plan| replay(&problem.start, &problem.goal, plan, required)).transpose()
 }

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use steadfast::io::Problem;
+use steadfast::io::LatticeProblem;
 use steadfast::reconfigure::replay::Replay;
 use steadfast::reconfigure::{Limit, Objective, Outcome, Plan, Report};
 use steadfast::robot::Configuration;
@@ -11,7 +11,7 @@ use steadfast::statics::Bracket;
 use crate::naming;
 
 /// What was found, what it is worth, what limits it, and what was proved.
-pub fn summary(problem: &Problem, report: &Report, replay: Option<&Replay>) -> String {
+pub fn summary(problem: &LatticeProblem, report: &Report, replay: Option<&Replay>) -> String {
     let start = &problem.start;
     let mut text = headline(report);
     if let Some(plan) = &report.plan {

@@ -10,10 +10,12 @@ use super::super::{suggest, wire};
 use super::connector::connectors;
 use super::decode::decode;
 use super::faults;
+use super::lattice_type::lattice_type;
+use super::module_type::module_type;
 use super::names::Names;
-use super::rotation::vector;
-use crate::robot::{BUILT_IN, BodyType, Catalogue, LatticeType, ModuleType, Shape};
-use crate::spatial::{Pose, Vec3};
+use super::terrain;
+use crate::robot::{BUILT_IN, Catalogue, Shape};
+use crate::spatial::Vec3;
 
 /// Reads a catalogue that is a file of its own.
 pub(super) fn read(root: &Place<'_>, findings: &mut Findings) -> Option<Catalogue> {
@@ -62,13 +64,15 @@ pub(super) fn referred(
 fn convert(wire: &wire::Catalogue, place: &Place<'_>, source: &str, findings: &mut Findings) -> Option<Catalogue> {
     let types = place.key("module_types");
     let names = wire.connectors.keys().map(String::as_str).collect();
-    let reader = Reader { connectors: Names::new("connectors", names, |_| place.clone(), findings) };
-    let module_types: Vec<_> = wire
-        .module_types
-        .iter()
-        .enumerate()
-        .map(|(index, (name, wire))| reader.module_type(name, wire, &types.entry(index), findings))
-        .collect();
+    let connector_names = Names::new("connectors", names, |_| place.clone(), findings);
+    let read = |(index, (name, wire)): (usize, (&String, &wire::ModuleType))| {
+        let place = types.entry(index);
+        match &wire.ports {
+            wire::Ports::Faces(_) => lattice_type(name, wire, &connector_names, &place, findings),
+            wire::Ports::List(ports) => module_type(name, wire, ports, &connector_names, &place, findings),
+        }
+    };
+    let module_types: Vec<_> = wire.module_types.iter().enumerate().map(read).collect();
     let complete = module_types.iter().all(Option::is_some);
     let catalogue = Catalogue {
         name: wire.name.clone().unwrap_or_else(|| source.to_string()),
@@ -83,91 +87,16 @@ fn convert(wire: &wire::Catalogue, place: &Place<'_>, source: &str, findings: &m
     problems.is_empty().then_some(catalogue)
 }
 
-struct Reader<'a> {
-    connectors: Names<'a>,
-}
-
-impl Reader<'_> {
-    fn module_type(
-        &self,
-        name: &str,
-        wire: &wire::ModuleType,
-        place: &Place<'_>,
-        findings: &mut Findings,
-    ) -> Option<ModuleType> {
-        if matches!(wire.ports, wire::Ports::List(_)) {
-            let message = "only lattice modules are planned with in this version".to_string();
-            findings.add(
-                &place.key("ports"),
-                codes::UNSUPPORTED,
-                message,
-                "write \"ports\": \"faces\", with `pitch_m` and `connector`".to_string(),
-            );
-            return None;
-        }
-        let body = body(wire, place, findings);
-        let lattice = self.lattice(wire, place, findings);
-        Some(ModuleType::of_lattice(name, body?, lattice?))
-    }
-
-    fn lattice(&self, wire: &wire::ModuleType, place: &Place<'_>, findings: &mut Findings) -> Option<LatticeType> {
-        let motion = |wanted: wire::Motion| wire.motions.contains(&wanted);
-        let (slide, pivot) = (motion(wire::Motion::Slide), motion(wire::Motion::Pivot));
-        for (index, other) in wire.motions.iter().enumerate() {
-            if matches!(other, wire::Motion::Roll | wire::Motion::Rotate) {
-                let hint = "a lattice module can \"slide\" and \"pivot\"".to_string();
-                let message = "not a motion of lattice modules";
-                findings.add(&place.key("motions").index(index), codes::UNSUPPORTED, message, hint);
-            }
-        }
-        if wire.pitch_m.is_none() {
-            let hint = "a module with ports \"faces\" needs the edge length of its cell";
-            findings.add(&place.key("pitch_m"), codes::MISSING_KEY, "the key is missing", hint.to_string());
-        }
-        if wire.connector.is_none() {
-            let hint = "a module with ports \"faces\" needs the connector of its faces";
-            findings.add(&place.key("connector"), codes::MISSING_KEY, "the key is missing", hint.to_string());
-        }
-        if pivot && wire.hinge.is_none() {
-            let hint = "a module that can pivot needs the connector that holds it at the edge meanwhile";
-            findings.add(&place.key("hinge"), codes::MISSING_KEY, "the key is missing", hint.to_string());
-        }
-        if !wire.joints.is_empty() {
-            let message = "joints are not planned with in this version";
-            findings.add(&place.key("joints"), codes::UNSUPPORTED, message, "leave the joints out".to_string());
-        }
-        let mut find = |key: &str, name: &str| self.connectors.find(name, &place.key(key), findings);
-        let face = wire.connector.as_ref().and_then(|name| find("connector", name));
-        let hinge = wire.hinge.as_ref().map(|name| find("hinge", name));
-        if hinge == Some(None) {
-            return None; // it names a connector that is not there
-        }
-        Some(LatticeType { pitch: wire.pitch_m?.0, face: face?, hinge: hinge.flatten(), slide, pivot })
-    }
-}
-
-fn body(wire: &wire::ModuleType, place: &Place<'_>, findings: &mut Findings) -> Option<BodyType> {
-    let place = place.key("bodies");
-    let [body] = wire.bodies.as_slice() else {
-        let message = format!("a lattice module has one body, found {}", wire.bodies.len());
-        findings.add(&place, codes::UNSUPPORTED, message, "join the bodies to one".to_string());
-        return None;
-    };
-    let shape = shape(&body.shape, &place.index(0).key("shape"), findings)?;
-    let com = body.com_m.map_or_else(Vec3::zeros, vector);
-    Some(BodyType { name: body.name.clone(), mass: body.mass_kg.0, com, shape, shape_pose: Pose::identity() })
-}
-
-/// The shape, if this version knows how to collide it.
+/// The shape of a body.
 pub(super) fn shape(wire: &wire::Shape, place: &Place<'_>, findings: &mut Findings) -> Option<Shape> {
     match wire {
         wire::Shape::Cuboid { half_extents_m } => {
             Some(Shape::Cuboid { half_extents: Vec3::from(half_extents_m.map(|half| half.0)) })
         }
-        wire::Shape::Cylinder { .. } | wire::Shape::Ball { .. } => {
-            let hint = "use a \"cuboid\"".to_string();
-            findings.add(place, codes::UNSUPPORTED, "only cuboids are planned with in this version", hint);
-            None
+        wire::Shape::Cylinder { radius_m, height_m } => {
+            Some(Shape::Cylinder { radius: radius_m.0, height: height_m.0 })
         }
+        wire::Shape::Ball { radius_m } => Some(Shape::Ball { radius: radius_m.0 }),
+        wire::Shape::Convex { points_m } => terrain::hull(points_m, &place.key("convex").key("points_m"), findings),
     }
 }

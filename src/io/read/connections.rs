@@ -4,6 +4,7 @@ use super::super::codes;
 use super::super::findings::{Findings, Place};
 use super::super::json::clipped;
 use super::super::wire;
+use super::module_type::refuse;
 use super::names::Names;
 use crate::robot::{Face, FaceConnection, Port};
 
@@ -33,6 +34,16 @@ pub(super) fn listed(
 }
 
 fn check_roll(wire: &wire::RolledConnection, place: &Place<'_>, findings: &mut Findings) {
+    for (key, present) in [("direction", wire.direction.is_some()), ("spin_deg", wire.spin_deg.is_some())] {
+        if present {
+            refuse(
+                &place.key(key),
+                "faces engage nowhere else",
+                "it is for ports on a surface: leave it out",
+                findings,
+            );
+        }
+    }
     if let Some(roll) = wire.roll_deg.filter(|roll| roll.0 % 90.0 != 0.0) {
         let message = format!("faces engage at multiples of 90 degrees, found {}", roll.0);
         findings.add(&place.key("roll_deg"), codes::OUT_OF_RANGE, message, "write 0, 90, 180 or 270".to_string());
@@ -49,14 +60,24 @@ pub(super) fn ports_of(
     [0, 1].map(|index| port(&texts[index], modules, &place.index(index), findings))
 }
 
+/// The two parts of a port that is written `MODULE:PORT`; `which` says in a hint what the second one is.
+pub(super) fn parts<'t>(
+    text: &'t str,
+    which: &str,
+    place: &Place<'_>,
+    findings: &mut Findings,
+) -> Option<(&'t str, &'t str)> {
+    let parts = text.rsplit_once(':');
+    if parts.is_none() {
+        let message = format!("expected a port, found \"{}\"", clipped(text));
+        findings.add(place, codes::BAD_PORT, message, format!("a port is a module's id, a colon and {which}"));
+    }
+    parts
+}
+
 /// The port that is written `MODULE:FACE`.
 fn port(text: &str, modules: &Names<'_>, place: &Place<'_>, findings: &mut Findings) -> Option<Port> {
-    let Some((module, face)) = text.rsplit_once(':') else {
-        let message = format!("expected a port, found \"{}\"", clipped(text));
-        let hint = "a port is a module's id, a colon and one of its own faces, e.g. \"a:+z\"";
-        findings.add(place, codes::BAD_PORT, message, hint.to_string());
-        return None;
-    };
+    let (module, face) = parts(text, "one of its own faces, e.g. \"a:+z\"", place, findings)?;
     let found = Face::from_name(face);
     if found.is_none() {
         let meant =

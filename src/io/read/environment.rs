@@ -2,11 +2,12 @@
 
 use nalgebra::Translation3;
 
+use super::super::document::Resolve;
 use super::super::findings::{Findings, Place};
 use super::super::wire;
-use super::catalogue::shape;
 use super::names::Names;
 use super::rotation::{rotation, vector};
+use super::terrain::terrain;
 use crate::robot::{Environment, Ground, ModuleLoad, Obstacle, Requirement};
 use crate::spatial::{Pose, Rotation, Vec3};
 
@@ -18,6 +19,7 @@ const MODULE_FRICTION: f64 = 0.4;
 pub(super) fn environment(
     wire: Option<&wire::Environment>,
     place: &Place<'_>,
+    resolve: Resolve<'_>,
     findings: &mut Findings,
 ) -> Option<Environment> {
     let Some(wire) = wire else {
@@ -27,15 +29,20 @@ pub(super) fn environment(
         .obstacles
         .iter()
         .enumerate()
-        .map(|(index, wire)| obstacle(wire, &place.key("obstacles").index(index), findings))
+        .map(|(index, wire)| obstacle(wire, &place.key("obstacles").index(index), resolve, findings))
         .collect();
     let ground = wire.ground.as_ref().map(|g| Ground { height: g.height_m.0, friction: g.friction.0 });
     let module_friction = wire.module_friction.map_or(MODULE_FRICTION, |friction| friction.0);
     Some(Environment { ground, obstacles: obstacles.into_iter().collect::<Option<_>>()?, module_friction })
 }
 
-fn obstacle(wire: &wire::Obstacle, place: &Place<'_>, findings: &mut Findings) -> Option<Obstacle> {
-    let shape = shape(&wire.shape, &place.key("shape"), findings);
+fn obstacle(
+    wire: &wire::Obstacle,
+    place: &Place<'_>,
+    resolve: Resolve<'_>,
+    findings: &mut Findings,
+) -> Option<Obstacle> {
+    let shape = terrain(&wire.shape, &place.key("shape"), resolve, findings);
     let rotation = match wire.rotation_xyzw {
         Some(xyzw) => rotation(xyzw, &place.key("rotation_xyzw"), findings),
         None => Rotation::identity(),

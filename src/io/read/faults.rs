@@ -3,7 +3,7 @@
 use super::super::codes::{self, Code};
 use super::super::findings::{Findings, Place};
 use super::super::json::clipped;
-use crate::robot::{Configuration, Fault, Part, Problem};
+use crate::robot::{Fault, Part, Problem};
 
 /// Reports the problems of a catalogue that stands at `place`.
 pub(super) fn of_catalogue(problems: &[Problem], place: &Place<'_>, findings: &mut Findings) {
@@ -16,17 +16,12 @@ pub(super) fn of_catalogue(problems: &[Problem], place: &Place<'_>, findings: &m
             Part::PortType(index, port) => place.key("module_types").entry(index).key("ports").index(port),
             _ => place.clone(),
         };
-        report(problem, &field(&part, problem.field), None, findings);
+        report(problem, &field(&part, problem.field), &[], findings);
     }
 }
 
-/// Reports the problems of a configuration that stands at `place`.
-pub(super) fn of_configuration(
-    problems: &[Problem],
-    configuration: &Configuration,
-    place: &Place<'_>,
-    findings: &mut Findings,
-) {
+/// Reports the problems of a robot that stands at `place`, with modules of these ids.
+pub(super) fn of_robot(problems: &[Problem], ids: &[&str], place: &Place<'_>, findings: &mut Findings) {
     for problem in problems {
         let part = match problem.part {
             Part::Module(index) => place.key("modules").index(index),
@@ -35,8 +30,13 @@ pub(super) fn of_configuration(
             Part::Load(index) => place.key("loads").index(index),
             _ => place.clone(),
         };
-        report(problem, &field(&part, problem.field), Some(configuration), findings);
+        report(problem, &field(&part, problem.field), ids, findings);
     }
+}
+
+/// Reports one fault of what is at `place`, of a robot with modules of these ids.
+pub(super) fn of_place(fault: Fault, ids: &[&str], place: &Place<'_>, findings: &mut Findings) {
+    report(&Problem::new(Part::Configuration, "", fault), place, ids, findings);
 }
 
 /// The key that holds a field of the core's.
@@ -47,15 +47,26 @@ fn field<'a>(part: &Place<'a>, name: &str) -> Place<'a> {
         "hinge" => &["hinge"],
         "module_type" => &["type"],
         "placement" => &["cell"],
-        "half_extents" => return part.key("bodies").index(0).key("shape").key("cuboid").key("half_extents_m"),
+        "half_extents" if part.key("bodies").node().is_some() => {
+            return measures(&part.key("bodies").index(0).key("shape"));
+        }
+        "surface" => &["surface"],
+        "range" => &["range_deg"],
+        "joints" => &["joints"],
         "com" => return part.key("bodies").index(0).key("com_m"),
         _ => &[],
     };
     keys.iter().fold(part.clone(), |place, key| place.key(key))
 }
 
-fn report(problem: &Problem, place: &Place<'_>, configuration: Option<&Configuration>, findings: &mut Findings) {
-    if let Some((code, message, hint)) = describe(problem, configuration) {
+/// Where the measures of a shape are.
+fn measures<'a>(shape: &Place<'a>) -> Place<'a> {
+    let cuboid = shape.key("cuboid");
+    if cuboid.node().is_some() { cuboid.key("half_extents_m") } else { shape.clone() }
+}
+
+fn report(problem: &Problem, place: &Place<'_>, ids: &[&str], findings: &mut Findings) {
+    if let Some((code, message, hint)) = describe(problem, ids) {
         let hint = (!hint.is_empty()).then(|| hint.to_string());
         findings.add(place, code, message, hint);
     }
@@ -63,9 +74,9 @@ fn report(problem: &Problem, place: &Place<'_>, configuration: Option<&Configura
 
 /// Code, message and hint; `None` for what was said already when the file's
 /// form and names were checked.
-fn describe(problem: &Problem, configuration: Option<&Configuration>) -> Option<(Code, String, &'static str)> {
-    let module = |index: usize| match configuration.and_then(|c| c.modules.get(index)) {
-        Some(module) => format!("module `{}`", clipped(&module.id)),
+pub(super) fn describe(problem: &Problem, ids: &[&str]) -> Option<(Code, String, &'static str)> {
+    let module = |index: usize| match ids.get(index) {
+        Some(id) => format!("module `{}`", clipped(id)),
         None => format!("module {index}"),
     };
     let owned = str::to_string;

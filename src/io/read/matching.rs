@@ -6,18 +6,19 @@ use super::super::codes;
 use super::super::findings::{Findings, Place};
 use super::super::json::clipped;
 use super::super::suggest;
-use crate::robot::{Configuration, FaceConnection, Matching, Module, Port};
+use super::robots::Compared;
+use crate::robot::Matching;
 
 /// The goal with its modules in the start's order: the module with the same id
 /// and type where there is one, otherwise the next one of the same type.
 /// Finds goals that no rearrangement of the start's modules can reach.
-pub(super) fn in_order_of(
-    start: &Configuration,
-    goal: Configuration,
+pub(super) fn in_order_of<R: Compared>(
+    start: &R,
+    mut goal: R,
     matching: Matching,
     place: &Place<'_>,
     findings: &mut Findings,
-) -> Option<Configuration> {
+) -> Option<R> {
     let before = findings.count();
     let comparison = Comparison { start, goal: &goal, place };
     comparison.counts(findings);
@@ -28,26 +29,28 @@ pub(super) fn in_order_of(
     if findings.count() > before {
         return None;
     }
-    Some(reordered(&comparison.order(), goal))
+    let order = comparison.order();
+    goal.reordered(&order);
+    Some(goal)
 }
 
-struct Comparison<'a> {
-    start: &'a Configuration,
-    goal: &'a Configuration,
+struct Comparison<'a, R> {
+    start: &'a R,
+    goal: &'a R,
     place: &'a Place<'a>,
 }
 
-impl Comparison<'_> {
+impl<R: Compared> Comparison<'_, R> {
     fn counts(&self, findings: &mut Findings) {
         let place = self.place.key("modules");
-        let (have, want) = (self.start.modules.len(), self.goal.modules.len());
+        let (have, want) = (self.start.count(), self.goal.count());
         if have != want {
             let message = format!("the goal has {want} modules, the start {have}");
             let hint = "no action adds or removes a module: list every module in both files";
             return findings.add(&place, codes::MODULE_COUNT, message, hint.to_string());
         }
-        for (index, module_type) in self.start.catalogue.module_types.iter().enumerate() {
-            let count = |of: &Configuration| of.modules.iter().filter(|module| module.module_type == index).count();
+        for (index, module_type) in self.start.catalogue().module_types.iter().enumerate() {
+            let count = |of: &R| (0..of.count()).filter(|&module| of.module_type(module) == index).count();
             let (have, want) = (count(self.start), count(self.goal));
             if have != want {
                 let name = clipped(&module_type.name);
@@ -59,25 +62,26 @@ impl Comparison<'_> {
 
     /// Modules that are known by their id: all where they are labelled, else those under load.
     fn named(&self, matching: Matching, findings: &mut Findings) {
-        let ids: HashMap<_, _> = self.goal.modules.iter().map(|module| (module.id.as_str(), module)).collect();
-        for (index, module) in self.start.modules.iter().enumerate() {
-            let loaded = self.start.loads.iter().any(|load| load.module == index);
+        let (start, goal) = (self.start, self.goal);
+        let ids: HashMap<_, _> = (0..goal.count()).map(|module| (goal.id(module), module)).collect();
+        for index in 0..start.count() {
+            let loaded = start.loads().iter().any(|load| load.module == index);
             if !(matching.labelled || loaded) {
                 continue;
             }
             let why = if matching.labelled { "the modules are labelled" } else { "it carries a load" };
-            let id = clipped(&module.id);
+            let id = clipped(start.id(index));
             let place = self.place.key("modules");
-            match ids.get(module.id.as_str()) {
+            match ids.get(start.id(index)) {
                 None => {
                     let message = format!("the start's module `{id}` is not in the goal; {why}");
-                    let hint = match suggest::closest(&module.id, ids_of(self.goal)) {
+                    let hint = match suggest::closest(start.id(index), (0..goal.count()).map(|m| goal.id(m))) {
                         Some(near) => format!("is `{near}` the same module?"),
                         None => "list it under the id that it has in the start".to_string(),
                     };
                     findings.add(&place, codes::UNKNOWN_NAME, message, hint);
                 }
-                Some(other) if other.module_type != module.module_type => {
+                Some(&other) if goal.module_type(other) != start.module_type(index) => {
                     let message = format!("module `{id}` has another type than in the start; {why}");
                     findings.add(&place, codes::MODULE_TYPES, message, "give it its type in the start".to_string());
                 }
@@ -91,27 +95,27 @@ impl Comparison<'_> {
         if matching.free_frame {
             return;
         }
-        let cells: HashMap<_, _> = self.goal.modules.iter().map(|module| (module.placement.cell, module)).collect();
-        let stays = |module: &Module, other: &Module| {
-            other.fixed && other.module_type == module.module_type && (!matching.labelled || other.id == module.id)
+        let (start, goal) = (self.start, self.goal);
+        let stays = |module: usize, other: usize| {
+            goal.is_fixed(other)
+                && goal.module_type(other) == start.module_type(module)
+                && (!matching.labelled || goal.id(other) == start.id(module))
         };
-        for module in self.start.modules.iter().filter(|module| module.fixed) {
-            let cell = module.placement.cell;
-            if !cells.get(&cell).is_some_and(|other| stays(module, other)) {
-                let message =
-                    format!("the start's fixed module `{}` in cell {cell:?} is not in the goal", clipped(&module.id));
-                let hint = "a fixed module never moves: list it with the same cell and \"fixed\": true";
-                findings.add(&self.place.key("modules"), codes::FIXED_MODULES, message, hint.to_string());
+        for (module, other) in start.in_place_of_fixed(goal) {
+            if !other.is_some_and(|other| stays(module, other)) {
+                let (id, place) = (clipped(start.id(module)), start.whereabouts(module));
+                let message = format!("the start's fixed module `{id}` {place} is not in the goal");
+                let hint = format!("a fixed module never moves: list it with {} and \"fixed\": true", R::WHERE);
+                findings.add(&self.place.key("modules"), codes::FIXED_MODULES, message, hint);
             }
         }
-        let held: HashMap<_, _> = self.start.modules.iter().map(|module| (module.placement.cell, module)).collect();
-        for (index, module) in self.goal.modules.iter().enumerate().filter(|(_, module)| module.fixed) {
-            if !held.get(&module.placement.cell).is_some_and(|other| other.fixed) {
+        for (module, other) in goal.in_place_of_fixed(start) {
+            if !other.is_some_and(|other| start.is_fixed(other)) {
                 let message = format!(
                     "module `{}` is fixed here, but no module is fixed there in the start",
-                    clipped(&module.id)
+                    clipped(goal.id(module))
                 );
-                let place = self.place.key("modules").index(index).key("fixed");
+                let place = self.place.key("modules").index(module).key("fixed");
                 findings.add(&place, codes::FIXED_MODULES, message, "a module cannot become fixed".to_string());
             }
         }
@@ -119,13 +123,13 @@ impl Comparison<'_> {
 
     /// For each module of the start, the goal's module that takes its place in the list.
     fn order(&self) -> Vec<usize> {
-        let mut taken = vec![false; self.goal.modules.len()];
-        let ids: HashMap<_, _> =
-            self.goal.modules.iter().enumerate().map(|(i, module)| (module.id.as_str(), i)).collect();
+        let (start, goal) = (self.start, self.goal);
+        let mut taken = vec![false; goal.count()];
+        let ids: HashMap<_, _> = (0..goal.count()).map(|module| (goal.id(module), module)).collect();
         let mut order: Vec<Option<usize>> = Vec::new();
-        for module in &self.start.modules {
-            let same = ids.get(module.id.as_str()).copied();
-            let same = same.filter(|&i| self.goal.modules[i].module_type == module.module_type);
+        for module in 0..start.count() {
+            let same = ids.get(start.id(module)).copied();
+            let same = same.filter(|&other| goal.module_type(other) == start.module_type(module));
             if let Some(index) = same {
                 taken[index] = true;
             }
@@ -133,27 +137,10 @@ impl Comparison<'_> {
         }
         let mut free: HashMap<usize, Vec<usize>> = HashMap::new();
         for index in (0..taken.len()).rev().filter(|&index| !taken[index]) {
-            free.entry(self.goal.modules[index].module_type).or_default().push(index);
+            free.entry(goal.module_type(index)).or_default().push(index);
         }
-        let mut next = |module: &Module| free.get_mut(&module.module_type).and_then(Vec::pop);
+        let mut next = |module: usize| free.get_mut(&start.module_type(module)).and_then(Vec::pop);
         // Equal numbers of every type: there is always a next one.
-        order.iter().zip(&self.start.modules).filter_map(|(found, module)| found.or_else(|| next(module))).collect()
+        order.iter().enumerate().filter_map(|(module, found)| found.or_else(|| next(module))).collect()
     }
-}
-
-fn ids_of(configuration: &Configuration) -> impl Iterator<Item = &str> {
-    configuration.modules.iter().map(|module| module.id.as_str())
-}
-
-fn reordered(order: &[usize], mut goal: Configuration) -> Configuration {
-    let mut new_index = vec![0; order.len()];
-    for (new, &old) in order.iter().enumerate() {
-        new_index[old] = new;
-    }
-    let moved = |port: Port| Port { module: new_index[port.module], ..port };
-    goal.modules = order.iter().map(|&old| goal.modules[old].clone()).collect();
-    goal.connections =
-        goal.connections.iter().map(|c| FaceConnection::new(moved(c.ports[0]), moved(c.ports[1]))).collect();
-    goal.connections.sort_unstable();
-    goal
 }

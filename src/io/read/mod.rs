@@ -3,6 +3,7 @@
 //! Each reader takes the wire types' values and the places they came from. What
 //! a file means is decided here; how it is written, in [`super::wire`].
 
+mod angle;
 mod catalogue;
 mod certificate;
 mod configuration;
@@ -12,20 +13,33 @@ mod decode;
 mod environment;
 mod faults;
 mod goal;
+mod lattice;
+mod lattice_type;
+mod linkage;
 mod matching;
+mod module_type;
 mod names;
 mod outcome;
 mod plan;
+mod robots;
+mod rofi;
 mod rotation;
 mod sequence;
+mod stl_and_obj;
 mod structure;
+mod terrain;
+
+pub(super) use rotation::port_rotation;
 
 use super::certificate_document::CertificateDocument;
 use super::diagnostics::Diagnostics;
 use super::document::{Checkable, NamedStructure, Problem, Resolve, SourceFile, Verifiable};
 use super::findings::Findings;
+use super::form::Form;
 use super::plan_document::PlanDocument;
+use crate::robot::linkage::Linkage;
 use crate::robot::{Catalogue, Configuration};
+use configuration::{Robot, read_start};
 
 /// Reads a `structure/1` file.
 ///
@@ -49,7 +63,7 @@ pub fn read_catalogue(file: &SourceFile) -> Result<Catalogue, Diagnostics> {
     findings.finish(value)
 }
 
-/// Reads a `configuration/1` file on its own, as a start.
+/// Reads a `configuration/1` file on its own, as a start; its modules must be lattice modules.
 ///
 /// # Errors
 /// All problems of the file, and of the catalogue that it refers to, at once.
@@ -57,34 +71,56 @@ pub fn read_configuration(file: &SourceFile, resolve: Resolve<'_>) -> Result<Con
     let mut findings = Findings::default();
     let document = findings.open(file);
     let value =
-        document.as_ref().and_then(|document| configuration::read_start(&document.root(), resolve, &mut findings));
+        document.as_ref().and_then(|document| read_start(&document.root(), resolve, &mut findings, lattice::build));
     findings.finish(value)
 }
 
-/// Reads a start and a goal, and checks them against each other.
+/// Reads a `configuration/1` file on its own, as a start, with modules of any kind, or a file of the RoFI
+/// platform. Lattice modules are taken as rigid modules with six ports.
+///
+/// # Errors
+/// All problems of the file, and of the catalogue that it refers to, at once.
+pub fn read_linkage(file: &SourceFile, resolve: Resolve<'_>) -> Result<Linkage, Diagnostics> {
+    let mut findings = Findings::default();
+    let document = findings.open_robot(file);
+    let value = document.as_ref().and_then(|document| match document.form {
+        Form::Own => read_start(&document.root(), resolve, &mut findings, linkage::build),
+        _ => rofi::parse(document, &mut findings).and_then(|world| rofi::start(&world, None, &mut findings)),
+    });
+    findings.finish(value)
+}
+
+/// Reads a start and a goal, each a `configuration/1` file or one of the RoFI platform, and checks them
+/// against each other.
 ///
 /// # Errors
 /// All problems of both files, and of the catalogues that they refer to, at once.
 pub fn read_problem(start: &SourceFile, goal: &SourceFile, resolve: Resolve<'_>) -> Result<Problem, Diagnostics> {
     let mut findings = Findings::default();
-    let (start, goal) = (findings.open(start), findings.open(goal));
-    let (start, goal) = (start.as_ref().map(|s| s.root()), goal.as_ref().map(|g| g.root()));
-    let value = goal::read_problem(start.as_ref(), goal.as_ref(), resolve, &mut findings);
+    let (start, goal) = (findings.open_robot(start), findings.open_robot(goal));
+    let value = goal::read_documents(start.as_ref(), goal.as_ref(), resolve, &mut findings);
     findings.finish(value)
 }
 
-/// Reads a structure or a configuration, by what its `format` says.
+/// Reads a structure or a configuration, by what its `format` says, or a file of the RoFI platform.
 ///
 /// # Errors
 /// All problems of the file, and of the catalogue that it refers to, at once.
 pub fn read_checkable(file: &SourceFile, resolve: Resolve<'_>) -> Result<Checkable, Diagnostics> {
     let mut findings = Findings::default();
-    let document = findings.open(file);
+    let document = findings.open_robot(file);
     let value = document.as_ref().and_then(|document| {
+        if document.form != Form::Own {
+            let world = rofi::parse(document, &mut findings)?;
+            return rofi::start(&world, None, &mut findings).map(Checkable::Linkage);
+        }
         let root = document.root();
         match decode::format_of(&root, &["structure", "configuration"], &mut findings)? {
             "structure" => structure::read(&root, &mut findings).map(Checkable::Structure),
-            _ => configuration::read_start(&root, resolve, &mut findings).map(Checkable::Configuration),
+            _ => match read_start(&root, resolve, &mut findings, |draft, findings| draft.build(findings))? {
+                Robot::Lattice(configuration) => Some(Checkable::Configuration(configuration)),
+                Robot::Linkage(linkage) => Some(Checkable::Linkage(linkage)),
+            },
         }
     });
     findings.finish(value)

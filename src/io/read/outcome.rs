@@ -1,7 +1,7 @@
 //! How a search ended, as `plan/1` says it.
 
 use super::super::codes;
-use super::super::document::Problem;
+use super::super::document::LatticeProblem;
 use super::super::findings::{Findings, Place};
 use super::super::wire;
 use super::names::Names;
@@ -12,7 +12,7 @@ use crate::statics::Bracket;
 /// The outcome of a file at `root`, which must have what belongs to it and nothing else.
 pub(super) fn outcome(
     wire: &wire::Plan,
-    problem: &Problem,
+    problem: &LatticeProblem,
     root: &Place<'_>,
     findings: &mut Findings,
 ) -> Option<Outcome> {
@@ -63,7 +63,7 @@ pub(super) fn outcome(
 
 fn impossible(
     wire: &wire::Impossible,
-    problem: &Problem,
+    problem: &LatticeProblem,
     place: &Place<'_>,
     findings: &mut Findings,
 ) -> Option<Impossible> {

@@ -1,7 +1,7 @@
 //! `plan/1` to what the planner reported, with its problem.
 
 use super::super::codes;
-use super::super::document::no_references;
+use super::super::document::{Problem, no_references};
 use super::super::findings::{Findings, Place};
 use super::super::plan_document::PlanDocument;
 use super::super::wire;
@@ -14,7 +14,8 @@ use crate::reconfigure::{Objective, Outcome, Proof, Report, Statistics};
 
 pub(super) fn read(root: &Place<'_>, findings: &mut Findings) -> Option<PlanDocument> {
     let wire: wire::Plan = decode("plan", root, findings)?;
-    let problem = read_problem(Some(&root.key("start")), Some(&root.key("goal")), &no_references, findings)?;
+    let problem = read_problem(&root.key("start"), &root.key("goal"), &no_references, findings)?;
+    let Problem::Lattice(problem) = problem else { return None };
     let ids = problem.start.modules.iter().map(|module| module.id.as_str()).collect();
     let modules = Names::new("modules", ids, |_| root.clone(), findings);
     let mut reader = Reader { start: &problem.start, modules: &modules, contradictions: Vec::new() };

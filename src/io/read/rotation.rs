@@ -1,6 +1,6 @@
-//! Unit quaternions, unit vectors and the 24 rotations of a cube.
+//! Unit quaternions, directions and the 24 rotations of a cube.
 
-use nalgebra::Quaternion;
+use nalgebra::{Matrix3, Quaternion, Rotation3, Unit};
 
 use super::super::codes;
 use super::super::findings::{Findings, Place};
@@ -58,6 +58,70 @@ pub(super) fn normal(components: [Real; 3], place: &Place<'_>, findings: &mut Fi
         return Vec3::z();
     }
     normal / length
+}
+
+/// A direction of any length but zero, normalised; `None` where there is none.
+pub(super) fn direction(components: [Real; 3], place: &Place<'_>, findings: &mut Findings) -> Option<Unit<Vec3>> {
+    let found = unit(components);
+    if found.is_none() {
+        let hint = "any length does, but it must point somewhere, e.g. [0, 0, 1]".to_string();
+        findings.add(place, codes::NOT_UNIT, "a direction of length 0 says nothing", hint);
+    }
+    found
+}
+
+fn unit(components: [Real; 3]) -> Option<Unit<Vec3>> {
+    let given = vector(components);
+    if (given.norm() - 1.0).abs() <= ROUNDING {
+        return Some(Unit::new_unchecked(given));
+    }
+    // Scaled first, so that no square overflows or vanishes.
+    let largest = given.amax();
+    (largest > 0.0).then(|| Unit::new_normalize(given / largest))
+}
+
+/// Cosine of the angle to the body's x axis up to which a port's x axis is taken from it.
+const ASIDE: f64 = 0.9;
+
+/// The frame of a port: z along `axis`, x as close to `x_axis` as may be, by default to the body's x axis,
+/// or to its y axis where `axis` is close to x. `place` is that of the port.
+pub(super) fn frame_along(
+    axis: [Real; 3],
+    x_axis: Option<[Real; 3]>,
+    place: &Place<'_>,
+    findings: &mut Findings,
+) -> Option<Rotation> {
+    let z = direction(axis, &place.key("axis"), findings);
+    let given = match x_axis {
+        Some(x) => Some(direction(x, &place.key("x_axis"), findings)?),
+        None => None,
+    };
+    let z = z?;
+    let near = given.unwrap_or(if z.x.abs() <= ASIDE { Vec3::x_axis() } else { Vec3::y_axis() });
+    let found = axes(&z, &near);
+    if found.is_none() {
+        let hint = "it says how the connector is turned about `axis`: choose a direction across it".to_string();
+        findings.add(&place.key("x_axis"), codes::NOT_UNIT, "is parallel to `axis`", hint);
+    }
+    found
+}
+
+/// The rotation that a port's `axis` and `x_axis` say when they are read.
+pub(in super::super) fn port_rotation(axis: [Real; 3], x_axis: [Real; 3]) -> Option<Rotation> {
+    let [z, x] = [axis, x_axis].map(unit);
+    axes(&z?, &x?)
+}
+
+/// The rotation to axes with this z, and x as close to `near` as may be; `None` where they are parallel.
+fn axes(z: &Unit<Vec3>, near: &Unit<Vec3>) -> Option<Rotation> {
+    let z = z.into_inner();
+    let across = near.into_inner() - z * near.dot(&z);
+    if !(across.norm() > UNIT) {
+        return None;
+    }
+    let x = across.normalize();
+    let axes = Matrix3::from_columns(&[x, z.cross(&x), z]);
+    Some(Rotation::from_rotation_matrix(&Rotation3::from_matrix_unchecked(axes)))
 }
 
 /// A vector from three numbers.

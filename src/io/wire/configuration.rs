@@ -4,8 +4,9 @@ use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::catalogue::{Catalogue, Shape};
+use super::catalogue::Catalogue;
 use super::number::{NonNegative, Real};
+use super::terrain::Terrain;
 
 /// Name and version of the format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -65,7 +66,7 @@ pub(crate) struct Environment {
     /// Horizontal ground, by default none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) ground: Option<Ground>,
-    /// Immovable solids.
+    /// What else stands there.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) obstacles: Vec<Obstacle>,
     /// Friction coefficient between modules that touch without being connected, by default 0.4.
@@ -83,13 +84,13 @@ pub(crate) struct Ground {
     pub(crate) friction: NonNegative,
 }
 
-/// An immovable solid.
+/// Something immovable.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Obstacle {
     /// Its shape.
-    pub(crate) shape: Shape,
-    /// Its centre.
+    pub(crate) shape: Terrain,
+    /// Origin of its frame; the centre of a cuboid, a cylinder or a ball.
     pub(crate) position_m: [Real; 3],
     /// Its orientation, a unit quaternion, by default along the world's axes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -107,11 +108,12 @@ pub(crate) struct Module {
     /// Name of its type in the catalogue.
     #[serde(rename = "type")]
     pub(crate) module_type: String,
-    /// Cell of a lattice module: it fills [x, x+1] x [y, y+1] x [z, z+1] times the pitch.
+    /// Cell of a lattice module, which places it: it fills [x, x+1] x [y, y+1] x [z, z+1] times the pitch.
     #[schemars(inner(range(min = -1_000_000, max = 1_000_000)))]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) cell: Option<[i32; 3]>,
-    /// Position of its first body, for modules outside the lattice.
+    /// Position of its first body's frame, for modules outside lattices. A module that connections
+    /// join to others which have a place needs none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) position_m: Option<[Real; 3]>,
     /// Orientation, a unit quaternion; of a lattice module one of the 24 rotations of a cube.
@@ -153,16 +155,27 @@ pub(crate) enum PairConnection {
     Rolled(RolledConnection),
 }
 
-/// Two ports that are connected at an angle.
+/// Two ports that are connected, and how one engages with the other. That places a module
+/// which has no place of its own; of modules that have one it is checked.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct RolledConnection {
     /// The two ports.
     pub(crate) ports: [String; 2],
-    /// Angle about the ports' axis, a multiple of 90 for faces. Of lattice
-    /// modules the placements alone decide at which of the four they engage.
+    /// Angle by which the one port's x axis is turned from the other's about the axis that they
+    /// share, by default 0; a multiple of 90 for faces. Of lattice modules the placements alone
+    /// decide at which of the four they engage.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) roll_deg: Option<Real>,
+    /// Of a port on a surface: the direction from the ball's centre to it, of any length, in the
+    /// frame of the ball's body (of a module of one body the module's).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) direction: Option<[Real; 3]>,
+    /// Of a port on a surface: the angle by which its x axis is turned about the direction outwards,
+    /// by default 0. At 0 it looks towards growing angles from the ball's z axis (south, were z north);
+    /// at the poles along the ball's x axis, or against it below.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) spin_deg: Option<Real>,
 }
 
 /// An external wrench that stays on a module wherever it goes.

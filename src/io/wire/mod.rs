@@ -15,10 +15,14 @@ mod load_range;
 mod number;
 mod outcome;
 mod plan;
+mod rofi;
 mod structure;
+mod terrain;
 
 pub(super) use action::{Action, Axis, CellTarget};
-pub(super) use catalogue::{BodyType, Catalogue, CatalogueFormat, Faces, ModuleType, Motion, Ports, Shape};
+pub(super) use catalogue::{
+    BodyType, Catalogue, CatalogueFormat, Faces, Joint, ModuleType, Motion, PortType, Ports, Shape,
+};
 pub(super) use certificate::{
     Carried, CarriedPoints, CarriedWrench, Certificate, CertificateFormat, Mechanism, Stress, Twist,
 };
@@ -34,7 +38,12 @@ pub(super) use connector::Connector;
 pub(super) use errors::{Errors, ErrorsFormat, FileError};
 pub(super) use gives_way::{ContactMotion, GivesWay, MovingContact};
 pub(super) use load_range::{Failure, LoadRange, LoadRangeFormat, RangeEnd, RangeOutcome};
-pub(super) use number::{Bound, Limit, NonNegative, Positive, Real, reals};
+pub(super) use number::{AngleRange, Bound, Limit, NonNegative, Positive, Real, reals};
 pub(super) use outcome::{Impossible, Outcome, StoppedBy, Which};
 pub(super) use plan::{Alternative, Bottleneck, Bracket, Objective, Plan, PlanFormat, Proof, Statistics};
+pub(super) use rofi::{
+    ComponentOf, CoordinateAxis, Direction, DockOf, IdentityTransform, ModuleJoint, NameOrNumber, PlacingJoint,
+    PlacingKind, RofiModule, RofiWorld, SpaceJoint, Transform, Voxel, VoxelWorld,
+};
 pub(super) use structure::{Body, Connection, Contact, Load, Structure, StructureFormat};
+pub(super) use terrain::{Mesh, Terrain};

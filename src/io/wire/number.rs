@@ -92,6 +92,26 @@ nullable_numbers! {
     Bound;
 }
 
+/// The smallest and the largest of some angles, or `null` where there is no end. It must
+/// be written out, as a limit must.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub(crate) struct AngleRange(pub(crate) Option<[Real; 2]>);
+
+impl JsonSchema for AngleRange {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> Cow<'static, str> {
+        "AngleRange".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({"type": ["array", "null"], "items": {"type": "number"}, "minItems": 2, "maxItems": 2})
+    }
+}
+
 /// Numbers from plain ones.
 pub(crate) fn reals<const N: usize>(values: [f64; N]) -> [Real; N] {
     values.map(Real)

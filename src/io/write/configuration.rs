@@ -1,45 +1,57 @@
 //! A configuration or a goal to `configuration/1`.
 
 use super::super::wire::{self, NonNegative, Positive, Real};
-use super::connector::connectors;
+use super::catalogue::{positive, referred};
 use super::{vector, xyzw};
 use crate::robot::{
-    Catalogue, Configuration, Environment, FaceConnection, Goal, Module, ModuleType, Orientation, Port, Shape,
+    Configuration, Environment, FaceConnection, Goal, Matching, Module, ModuleLoad, Orientation, Port, Requirement,
+    Shape, Terrain,
 };
-use crate::spatial::{Rotation, Vec3};
+use crate::spatial::Rotation;
 
 /// A configuration that stands on its own.
 pub(super) fn start(configuration: &Configuration) -> wire::Configuration {
-    let require = &configuration.require;
-    let loads = configuration.loads.iter().map(|load| wire::ModuleLoad {
-        module: configuration.modules[load.module].id.clone(),
-        force_n: vector(load.force),
-        torque_nm: Some(vector(load.torque)),
-        at_m: load.at.map(vector),
-    });
+    let loads = configuration.loads.iter().map(|load| module_load(&configuration.modules[load.module].id, load));
     wire::Configuration {
-        catalogue: Some(catalogue(&configuration.catalogue)),
+        catalogue: Some(referred(&configuration.catalogue)),
         gravity_m_s2: Some(vector(configuration.gravity)),
         environment: Some(environment(&configuration.environment)),
         loads: Some(loads.collect()),
-        require: Some(wire::Require { margin: Some(Real(require.margin)), connected: Some(require.connected) }),
+        require: Some(require(&configuration.require)),
         ..robot(configuration)
     }
 }
 
 /// A goal, which takes everything else from its start.
 pub(super) fn goal(goal: &Goal) -> wire::Configuration {
-    let matching = wire::Match {
-        modules: Some(match goal.matching.labelled {
+    wire::Configuration { matching: Some(matching(goal.matching)), ..robot(&goal.configuration) }
+}
+
+/// A load on the module with this id.
+pub(super) fn module_load(id: &str, load: &ModuleLoad) -> wire::ModuleLoad {
+    wire::ModuleLoad {
+        module: id.to_string(),
+        force_n: vector(load.force),
+        torque_nm: Some(vector(load.torque)),
+        at_m: load.at.map(vector),
+    }
+}
+
+pub(super) fn require(require: &Requirement) -> wire::Require {
+    wire::Require { margin: Some(Real(require.margin)), connected: Some(require.connected) }
+}
+
+pub(super) fn matching(matching: Matching) -> wire::Match {
+    wire::Match {
+        modules: Some(match matching.labelled {
             true => wire::ModuleMatch::Labelled,
             false => wire::ModuleMatch::Interchangeable,
         }),
-        frame: Some(match goal.matching.free_frame {
+        frame: Some(match matching.free_frame {
             true => wire::FrameMatch::Free,
             false => wire::FrameMatch::World,
         }),
-    };
-    wire::Configuration { matching: Some(matching), ..robot(&goal.configuration) }
+    }
 }
 
 fn robot(configuration: &Configuration) -> wire::Configuration {
@@ -76,9 +88,9 @@ fn module(configuration: &Configuration, module: &Module) -> wire::Module {
     }
 }
 
-fn environment(environment: &Environment) -> wire::Environment {
+pub(super) fn environment(environment: &Environment) -> wire::Environment {
     let obstacles = environment.obstacles.iter().map(|obstacle| wire::Obstacle {
-        shape: shape(&obstacle.shape),
+        shape: terrain(&obstacle.shape),
         position_m: vector(obstacle.pose.translation.vector),
         rotation_xyzw: (obstacle.pose.rotation != Rotation::identity()).then(|| xyzw(&obstacle.pose.rotation)),
         friction: NonNegative(obstacle.friction),
@@ -93,41 +105,28 @@ fn environment(environment: &Environment) -> wire::Environment {
     }
 }
 
-fn shape(shape: &Shape) -> wire::Shape {
-    let Shape::Cuboid { half_extents } = shape;
-    wire::Shape::Cuboid { half_extents_m: [half_extents.x, half_extents.y, half_extents.z].map(Positive) }
-}
-
-/// By name if it is built in, in full otherwise, so that the file stands on its own.
-fn catalogue(catalogue: &Catalogue) -> wire::CatalogueRef {
-    if Catalogue::built_in(&catalogue.name).as_ref() == Some(catalogue) {
-        return wire::CatalogueRef::Name(catalogue.name.clone());
-    }
-    let types = catalogue.module_types.iter().map(|t| (t.name.clone(), module_type(catalogue, t)));
-    wire::CatalogueRef::Inline(Box::new(wire::Catalogue {
-        format: wire::CatalogueFormat::V1,
-        name: Some(catalogue.name.clone()),
-        connectors: connectors(&catalogue.connectors),
-        module_types: types.collect(),
-    }))
-}
-
-fn module_type(catalogue: &Catalogue, module_type: &ModuleType) -> wire::ModuleType {
-    let (body, lattice) = (module_type.body(), module_type.cell());
-    let motions = [(lattice.slide, wire::Motion::Slide), (lattice.pivot, wire::Motion::Pivot)];
-    let connector = |index: usize| catalogue.connectors[index].name.clone();
-    wire::ModuleType {
-        pitch_m: Some(Positive(lattice.pitch)),
-        bodies: vec![wire::BodyType {
-            name: body.name.clone(),
-            mass_kg: NonNegative(body.mass),
-            com_m: (body.com != Vec3::zeros()).then(|| vector(body.com)),
-            shape: shape(&body.shape),
-        }],
-        ports: wire::Ports::Faces(wire::Faces::Faces),
-        connector: Some(connector(lattice.face)),
-        hinge: lattice.hinge.map(connector),
-        motions: motions.into_iter().filter(|(can, _)| *can).map(|(_, motion)| motion).collect(),
-        joints: Vec::new(),
+/// The shape of an obstacle, with a mesh in full, so that the file stands on its own.
+fn terrain(terrain: &Terrain) -> wire::Terrain {
+    match terrain {
+        Terrain::Solid(Shape::Cuboid { half_extents }) => {
+            wire::Terrain::Cuboid { half_extents_m: positive(half_extents) }
+        }
+        Terrain::Solid(Shape::Cylinder { radius, height }) => {
+            wire::Terrain::Cylinder { radius_m: Positive(*radius), height_m: Positive(*height) }
+        }
+        Terrain::Solid(Shape::Ball { radius }) => wire::Terrain::Ball { radius_m: Positive(*radius) },
+        Terrain::Solid(Shape::Convex(hull)) => {
+            wire::Terrain::Convex { points_m: hull.points().iter().copied().map(vector).collect() }
+        }
+        Terrain::HalfSpace => wire::Terrain::Plane {},
+        Terrain::HeightField(field) => wire::Terrain::HeightField {
+            cell_m: field.cell().map(Positive),
+            heights_m: field.heights().iter().map(|row| row.iter().copied().map(Real).collect()).collect(),
+        },
+        Terrain::Mesh(mesh) => wire::Terrain::Mesh(wire::Mesh {
+            vertices_m: Some(mesh.vertices().iter().copied().map(vector).collect()),
+            triangles: Some(mesh.triangles().to_vec()),
+            ..wire::Mesh::default()
+        }),
     }
 }

@@ -1,14 +1,17 @@
 //! From core types to texts that read back equal.
 
+mod catalogue;
 mod certificate;
 mod check;
 mod configuration;
 mod connector;
 mod errors;
 mod gives_way;
+mod linkage;
 mod load_range;
 mod outcome;
 mod plan;
+mod rofi;
 mod sequence;
 mod structure;
 
@@ -23,10 +26,12 @@ use super::certificate_document::CertificateDocument;
 use super::check_report::CheckReport;
 use super::diagnostics::Diagnostics;
 use super::document::NamedStructure;
+use super::form::Form;
 use super::load_range_report::LoadRangeReport;
 use super::plan_document::PlanDocument;
 use super::{layout, wire};
-use crate::robot::Configuration;
+use crate::robot::linkage::Linkage;
+use crate::robot::{Catalogue, Configuration};
 use crate::spatial::{Rotation, Vec3};
 use crate::statics::Bracket;
 
@@ -65,6 +70,38 @@ pub fn write_structure(structure: &NamedStructure) -> Result<String, Unwritable>
 /// A number that is not finite, other than an unlimited limit of a box.
 pub fn write_configuration(configuration: &Configuration) -> Result<String, Unwritable> {
     text(&configuration::start(configuration))
+}
+
+/// Writes a `configuration/1` file of a linkage that reads back equal, bit for bit, with
+/// [`read_linkage`](super::read_linkage): every module with its pose and its joints. A catalogue that is not
+/// built in is written into it.
+///
+/// # Errors
+/// A number that is not finite, other than an unlimited limit of a box.
+pub fn write_linkage(linkage: &Linkage) -> Result<String, Unwritable> {
+    text(&linkage::start(linkage))
+}
+
+/// Writes a robot of RoFI modules as a file of that platform, in the form that is asked for.
+///
+/// # Errors
+/// What the format cannot express, one sentence each; for [`Form::Own`] that it is none of the platform's.
+pub fn write_rofi(linkage: &Linkage, form: Form) -> Result<String, Vec<String>> {
+    let json = |text: Result<String, Unwritable>| text.map_err(|problem| vec![problem.to_string()]);
+    match form {
+        Form::Own => Err(vec!["it is no format of the RoFI platform".to_string()]),
+        Form::RofiWorld => rofi::world(linkage).and_then(|world| json(text(&world))),
+        Form::RofiText => rofi::text(linkage),
+        Form::RofiVoxels => rofi::voxels(linkage).and_then(|voxels| json(text(&voxels))),
+    }
+}
+
+/// Writes a `catalogue/1` file that reads back equal, bit for bit.
+///
+/// # Errors
+/// A number that is not finite, other than an unlimited limit of a box.
+pub fn write_catalogue(catalogue: &Catalogue) -> Result<String, Unwritable> {
+    text(&catalogue::wire(catalogue))
 }
 
 /// Writes a `plan/1` file that stands on its own. An end of a margin where

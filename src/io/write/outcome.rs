@@ -1,6 +1,6 @@
 //! Why a search found no plan, to `plan/1`.
 
-use super::super::document::Problem;
+use super::super::document::LatticeProblem;
 use super::super::wire::{self, Real};
 use super::sequence::ports;
 use super::{Unwritable, bracket};
@@ -8,7 +8,7 @@ use crate::reconfigure::{Impossible, Limit, Which};
 use crate::robot::Configuration;
 
 /// The reason; `problem` is what it speaks of.
-pub(super) fn impossible(reason: &Impossible, problem: &Problem) -> Result<wire::Impossible, Unwritable> {
+pub(super) fn impossible(reason: &Impossible, problem: &LatticeProblem) -> Result<wire::Impossible, Unwritable> {
     Ok(match reason {
         Impossible::ModulesDiffer { module_type, start, goal } => wire::Impossible::ModulesDiffer {
             module_type: module_type.clone(),
@@ -47,7 +47,7 @@ fn which(which: Which) -> wire::Which {
     }
 }
 
-fn configuration(which: Which, problem: &Problem) -> &Configuration {
+fn configuration(which: Which, problem: &LatticeProblem) -> &Configuration {
     match which {
         Which::Start => &problem.start,
         Which::Goal => &problem.goal.configuration,

@@ -3,7 +3,9 @@
 //! Knows which ports hold, which bodies touch and where; knows neither actions nor what the oracle
 //! makes of the structure.
 
-use crate::geometry::{BroadPhase, ContactPatch, Solid, TOUCH, contact, ground_contact};
+use std::fmt;
+
+use crate::geometry::{BroadPhase, ContactPatch, Solid, Surrounding, Surroundings, TOUCH, contact};
 use crate::robot::ModuleType;
 use crate::robot::linkage::{Connection, Linkage, Port, frame_between};
 use crate::spatial::{Point, Pose};
@@ -58,6 +60,15 @@ pub enum Touched {
     Obstacle(usize),
 }
 
+impl From<Surrounding> for Touched {
+    fn from(what: Surrounding) -> Self {
+        match what {
+            Surrounding::Ground => Self::Ground,
+            Surrounding::Obstacle(index) => Self::Obstacle(index),
+        }
+    }
+}
+
 /// A structure with the way back to the linkage.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Assembly {
@@ -88,7 +99,7 @@ pub struct Assembler<'a> {
     connectors: Vec<Connector>,
     /// Index of the connector of each module type's first joint.
     motors: Vec<usize>,
-    obstacles: BroadPhase,
+    surroundings: Surroundings,
     tolerance: f64,
 }
 
@@ -113,8 +124,8 @@ impl<'a> Assembler<'a> {
             connectors.extend((0..module_type.joints.len()).map(|joint| motor(module_type, joint)));
         }
         let size = (0..linkage.modules.len()).map(|m| linkage.module_type(m).size()).fold(0.0, f64::max);
-        let obstacles = BroadPhase::new(linkage.environment.obstacles.iter().map(Solid::from).collect());
-        Self { linkage, first, bodies, connectors, motors, obstacles, tolerance: CONTACT * size }
+        let surroundings = Surroundings::new(&linkage.environment);
+        Self { linkage, first, bodies, connectors, motors, surroundings, tolerance: CONTACT * size }
     }
 
     /// The structure of a state: a body for each body of every module, a connection for each joint and each
@@ -229,16 +240,8 @@ impl<'a> Assembler<'a> {
             if self.is_fixed(self.bodies[index]) {
                 continue;
             }
-            if let Some(ground) = &environment.ground
-                && let Some(patch) = ground_contact(solid, ground.height, self.tolerance)
-            {
-                add_contacts(assembly, index, Anchor::World, Touched::Ground, ground.friction, patch);
-            }
-            for (obstacle, other) in self.obstacles.near(solid, self.tolerance) {
-                if let Some(patch) = contact(solid, other, self.tolerance) {
-                    let friction = environment.obstacles[obstacle].friction;
-                    add_contacts(assembly, index, Anchor::World, Touched::Obstacle(obstacle), friction, patch);
-                }
+            for (what, patch) in self.surroundings.contacts(solid, self.tolerance) {
+                add_contacts(assembly, index, Anchor::World, what.into(), what.friction(environment), patch);
             }
         }
     }
@@ -324,5 +327,15 @@ fn add_contacts(
     for position in patch.points {
         assembly.structure.contacts.push(Contact { body, against, position, normal: patch.normal, friction });
         assembly.contacts.push((assembly.bodies[body], touched));
+    }
+}
+
+impl fmt::Display for Touched {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Body(body) => write!(f, "body {} of module number {}", body.body, body.module),
+            Self::Obstacle(index) => write!(f, "obstacle number {index}"),
+            Self::Ground => f.write_str("the ground"),
+        }
     }
 }

@@ -3,9 +3,8 @@
 use crate::reconfigure::plan::Plan;
 use crate::statics::Bracket;
 
-use super::count_moves;
 use super::failure::Fault;
-use super::transit::{Checker, Found, Sample};
+use super::judge::{Found, Judge, Sample};
 
 /// Margins of one and the same state, assessed twice with its modules in
 /// another order, differ by at most this, relative to the larger of 1 and the
@@ -18,7 +17,7 @@ const SAME_STATE: f64 = 2e-6;
 const SAMPLING: f64 = 0.05;
 
 /// Relative distance to the utilisation at which a connection counts as at its limit.
-pub(super) const AT_LIMIT: f64 = 1e-3;
+pub(in crate::reconfigure) const AT_LIMIT: f64 = 1e-3;
 
 /// By how much the margin of a move found on one grid may differ from `margin`, found on another.
 pub(super) fn tolerance(margin: f64) -> f64 {
@@ -36,9 +35,13 @@ fn agree(a: Bracket, b: Bracket, tolerance: f64) -> bool {
 }
 
 /// Compares a plan's claims with the margins found: of the start, then of
-/// every action that could be replayed.
-pub(super) fn check(checker: &mut Checker, plan: &Plan, found: &[Found]) {
-    let moves = count_moves(plan);
+/// every action that could be replayed. `moves` is how many of the actions are moves.
+pub(in crate::reconfigure) fn check<A, C: Copy + PartialEq, T>(
+    checker: &mut Judge<C, T>,
+    plan: &Plan<A, C>,
+    moves: usize,
+    found: &[Found<C>],
+) {
     if usize::try_from(plan.moves) != Ok(moves) {
         checker.fail(None, None, Fault::MovesDiffer { claimed: plan.moves, found: moves }, None);
     }
@@ -63,7 +66,7 @@ pub(super) fn check(checker: &mut Checker, plan: &Plan, found: &[Found]) {
 }
 
 /// The plan's own margin and bottleneck.
-fn check_whole(checker: &mut Checker, plan: &Plan, found: &[Found]) {
+fn check_whole<A, C: Copy + PartialEq, T>(checker: &mut Judge<C, T>, plan: &Plan<A, C>, found: &[Found<C>]) {
     let Some(claimed) = plan.margin else { return };
     let smallest = plan.actions.iter().filter_map(|planned| planned.margin).fold(found[0].margin, Bracket::min);
     if !agree(claimed, smallest, same_state(claimed.lower)) {
@@ -76,8 +79,8 @@ fn check_whole(checker: &mut Checker, plan: &Plan, found: &[Found]) {
     let place = bottleneck.action.map_or(Some(0), |action| action.checked_add(1));
     let samples = || place.and_then(|at| found.get(at)).into_iter().flat_map(|f| f.at(bottleneck.phase));
     let attained = samples().filter(|sample| agree(sample.margin, claimed, same_state(claimed.lower)));
-    let limits = |sample: &Sample| match bottleneck.connection {
-        Some(connection) => sample.limiting.contains(&connection),
+    let limits = |sample: &Sample<C>| match &bottleneck.connection {
+        Some(connection) => sample.limiting.contains(connection),
         None => sample.weakest.is_none(),
     };
     if !attained.into_iter().any(limits) {
@@ -85,6 +88,6 @@ fn check_whole(checker: &mut Checker, plan: &Plan, found: &[Found]) {
     }
 }
 
-fn margin_of<'a>(samples: impl Iterator<Item = &'a Sample>) -> Option<Bracket> {
+fn margin_of<'a, C: 'a>(samples: impl Iterator<Item = &'a Sample<C>>) -> Option<Bracket> {
     samples.map(|sample| sample.margin).reduce(Bracket::min)
 }

@@ -1,4 +1,6 @@
 //! What can be wrong with a plan.
+//!
+//! `C` names a connection and `T` what a module hits; without parameters those of a lattice.
 
 use std::fmt;
 
@@ -8,25 +10,25 @@ use crate::statics::Bracket;
 
 /// One thing that is wrong with a plan.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Failure {
+pub struct Failure<C = FaceConnection, T = Touched> {
     /// Index of the action; `None` for the start, the plan's own claims and the goal.
     pub action: Option<usize>,
     /// Phase of the action, where it happens during a move.
     pub phase: Option<f64>,
     /// What is wrong.
-    pub fault: Fault,
+    pub fault: Fault<T>,
     /// The connection that fails first, where one does.
-    pub connection: Option<FaceConnection>,
+    pub connection: Option<C>,
 }
 
 /// What is wrong.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Fault {
+pub enum Fault<T = Touched> {
     /// A module index points beyond the start's modules.
     UnknownModule,
     /// A fixed module would have to move.
     FixedModule,
-    /// The two faces do not coincide.
+    /// The two faces or ports to connect do not meet.
     FacesApart,
     /// The connection to engage is engaged already.
     AlreadyEngaged,
@@ -42,10 +44,14 @@ pub enum Fault {
     NotHeld,
     /// A connection that the motion cannot keep is engaged.
     NotReleased,
+    /// The side of the joint or connection that is carried holds on to the other side as well.
+    NotABridge,
+    /// The joint cannot be turned there.
+    BeyondRange,
     /// The moving module hits something.
     Collision {
         /// What it hits.
-        with: Touched,
+        with: T,
     },
     /// Not all modules are connected.
     Disconnected,
@@ -80,22 +86,22 @@ pub enum Fault {
     ConnectionsDiffer,
 }
 
-impl fmt::Display for Fault {
+impl<T: fmt::Display> fmt::Display for Fault<T> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::UnknownModule => f.write_str("no such module"),
             Self::FixedModule => f.write_str("a fixed module cannot move"),
-            Self::FacesApart => f.write_str("the faces do not coincide"),
+            Self::FacesApart => f.write_str("the two ports do not meet"),
+            Self::NotABridge => f.write_str("what moves is held by more than the joint or connection that it turns at"),
+            Self::BeyondRange => f.write_str("the joint's range ends before this position"),
             Self::AlreadyEngaged => f.write_str("the connection is engaged already"),
             Self::NotEngaged => f.write_str("the connection is not engaged"),
             Self::Unable => f.write_str("the module cannot make this motion"),
-            Self::NoSuchMotion => f.write_str("no motion leads from the module's cell to this one"),
+            Self::NoSuchMotion => f.write_str("no single motion leads there from where the module is"),
             Self::NoSupport => f.write_str("a module that the motion needs as support or landing is missing"),
             Self::NotHeld => f.write_str("the module is not connected to the support of its motion"),
             Self::NotReleased => f.write_str("a connection that the motion cannot keep is engaged"),
-            Self::Collision { with: Touched::Module(other) } => write!(f, "it collides with module number {other}"),
-            Self::Collision { with: Touched::Obstacle(index) } => write!(f, "it collides with obstacle number {index}"),
-            Self::Collision { with: Touched::Ground } => f.write_str("it collides with the ground"),
+            Self::Collision { with } => write!(f, "it collides with {with}"),
             Self::Disconnected => f.write_str("the robot is not connected"),
             Self::Unstable { margin, .. } if margin.upper == f64::NEG_INFINITY => {
                 f.write_str("the robot tips, slides or falls as a whole")
@@ -111,6 +117,16 @@ impl fmt::Display for Fault {
             Self::ClaimsIncomplete => f.write_str("the plan claims margins for some of its actions only"),
             Self::PlacementsDiffer => f.write_str("the modules do not end where the goal wants them"),
             Self::ConnectionsDiffer => f.write_str("the connections at the end are not the goal's"),
+        }
+    }
+}
+
+impl fmt::Display for Touched {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Module(other) => write!(f, "module number {other}"),
+            Self::Obstacle(index) => write!(f, "obstacle number {index}"),
+            Self::Ground => f.write_str("the ground"),
         }
     }
 }

@@ -7,28 +7,29 @@
 //! assembly of structures and the oracle.
 
 mod arrival;
-mod claims;
-mod failure;
+pub(super) mod claims;
+pub(super) mod failure;
+pub(super) mod judge;
 pub(super) mod legality;
 mod transit;
 
-use crate::robot::{Configuration, Goal};
+use crate::robot::{Configuration, FaceConnection, Goal};
 use crate::statics::Bracket;
 
-use super::action::Action;
-use super::assembly::Assembler;
+use super::assembly::{Assembler, Touched};
 use super::plan::Plan;
 use super::refusal::{Refusal, check};
 pub use failure::{Failure, Fault};
+use judge::Found;
 use legality::{Transition, transition};
-use transit::{Checker, Found};
+use transit::Checker;
 
 /// What a replay found.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Replay {
+pub struct Replay<C = FaceConnection, T = Touched> {
     /// Everything that is wrong, in the order of the actions; the plan's
     /// own claims and the goal come last. Empty for a plan that verifies.
-    pub failures: Vec<Failure>,
+    pub failures: Vec<Failure<C, T>>,
     /// Smallest margin over all states that were reached.
     pub margin: Bracket,
     /// Actions that could be carried out.
@@ -37,7 +38,7 @@ pub struct Replay {
     pub oracle_solves: u64,
 }
 
-impl Replay {
+impl<C, T> Replay<C, T> {
     /// Whether nothing is wrong.
     pub fn is_verified(&self) -> bool {
         self.failures.is_empty()
@@ -68,7 +69,7 @@ pub fn replay(start: &Configuration, goal: &Goal, plan: &Plan, required: f64) ->
     for (index, planned) in plan.actions.iter().enumerate() {
         match transition(&state, &planned.action) {
             Err(fault) => {
-                checker.fail(Some(index), None, fault, None);
+                checker.judge.fail(Some(index), None, fault, None);
                 legal = false;
                 break;
             }
@@ -81,12 +82,13 @@ pub fn replay(start: &Configuration, goal: &Goal, plan: &Plan, required: f64) ->
         }
     }
     let actions_replayed = found.len() - 1;
-    claims::check(&mut checker, plan, &found);
+    let moves = plan.actions.iter().filter(|planned| planned.action.is_move()).count();
+    claims::check(&mut checker.judge, plan, moves, &found);
     if legal && let Some(fault) = arrival::missing(start, &state, goal) {
-        checker.fail(None, None, fault, None);
+        checker.judge.fail(None, None, fault, None);
     }
     let margin = found.iter().map(|f| f.margin).reduce(Bracket::min).expect("the start was checked");
-    Ok(Replay { margin, actions_replayed, oracle_solves: checker.solves, failures: checker.failures })
+    Ok(Replay { margin, actions_replayed, oracle_solves: checker.judge.solves, failures: checker.judge.failures })
 }
 
 /// Checks one legal action and says what margins it has.
@@ -96,16 +98,11 @@ fn take(
     before: &Configuration,
     next: &Transition,
     claimed: &[f64],
-) -> Result<Found, Refusal> {
+) -> Result<Found<FaceConnection>, Refusal> {
     let during = match &next.path {
         Some(path) => Some(checker.transit(index, before, path, claimed)?),
         None => None,
     };
     let rest = checker.rest(Some(index), &next.after)?;
     Ok(during.map_or(rest.clone(), |during| during.followed_by(rest)))
-}
-
-/// How many of a plan's actions are moves.
-fn count_moves(plan: &Plan) -> usize {
-    plan.actions.iter().map(|planned| planned.action).filter(Action::is_move).count()
 }

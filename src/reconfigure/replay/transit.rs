@@ -7,74 +7,33 @@ use crate::geometry::{Solid, Surroundings, first_collision};
 use crate::reconfigure::assembly::{Assembler, Engagement, Moving, Touched, Transient};
 use crate::reconfigure::refusal::Refusal;
 use crate::robot::{Configuration, FaceConnection, Placement, Port};
-use crate::statics::{Bracket, Question, assess};
+use crate::statics::{Question, assess};
 
 use super::claims;
-use super::failure::{Failure, Fault};
+use super::failure::Fault;
+use super::judge::{Found, Judge, Sample, phases};
 use super::legality::Path;
-
-/// A state that the oracle assessed.
-#[derive(Clone, Debug)]
-pub(super) struct Sample {
-    /// Phase of the action; 1 at rest after it.
-    pub phase: f64,
-    pub margin: Bracket,
-    /// The connections that limit it: critical ones, and those at their limit.
-    pub limiting: Vec<FaceConnection>,
-    pub weakest: Option<FaceConnection>,
-    connected: bool,
-}
-
-/// The margins found for the start or one action.
-#[derive(Clone, Debug)]
-pub(super) struct Found {
-    pub margin: Bracket,
-    pub samples: Vec<Sample>,
-    /// Whether all of it is one state at rest, so that margins compare exactly.
-    pub exact: bool,
-}
-
-impl Found {
-    /// A move and the rest after it.
-    pub fn followed_by(mut self, rest: Self) -> Self {
-        self.margin = self.margin.min(rest.margin);
-        self.samples.extend(rest.samples);
-        self
-    }
-
-    /// The samples at a phase.
-    pub fn at(&self, phase: f64) -> impl Iterator<Item = &Sample> {
-        self.samples.iter().filter(move |sample| sample.phase == phase)
-    }
-}
 
 /// Checks states and collects what is wrong.
 pub(super) struct Checker<'a> {
-    start: &'a Configuration,
     assembler: &'a Assembler<'a>,
-    required: f64,
-    pub failures: Vec<Failure>,
-    pub solves: u64,
+    surroundings: Surroundings,
+    pub judge: Judge<FaceConnection, Touched>,
 }
 
 impl<'a> Checker<'a> {
     pub fn new(start: &'a Configuration, assembler: &'a Assembler<'a>, required: f64) -> Self {
-        Self { start, assembler, required, failures: Vec::new(), solves: 0 }
-    }
-
-    pub fn fail(&mut self, action: Option<usize>, phase: Option<f64>, fault: Fault, weakest: Option<FaceConnection>) {
-        self.failures.push(Failure { action, phase, fault, connection: weakest });
+        let surroundings = Surroundings::new(&start.environment);
+        Self { assembler, surroundings, judge: Judge::new(required, start.require.connected) }
     }
 
     /// Checks a state at rest.
-    pub fn rest(&mut self, action: Option<usize>, state: &Configuration) -> Result<Found, Refusal> {
+    pub fn rest(&mut self, action: Option<usize>, state: &Configuration) -> Result<Found<FaceConnection>, Refusal> {
         let placements: Vec<Placement> = state.modules.iter().map(|module| module.placement).collect();
         let engaged: Vec<_> = state.connections.iter().map(|c| Engagement::face(state, c)).collect();
         let at_rest = Transient { placements: &placements, moving: None, engaged: &engaged };
         let sample = self.sample(state, &at_rest, 1.0)?;
-        self.solves += 1;
-        self.judge(action, None, &[&sample], self.required);
-        Ok(Found { margin: sample.margin, samples: vec![sample], exact: true })
+        Ok(self.judge.rest(action, sample))
     }
 
     /// Checks a move from a state on a fixed grid of phases, and at those claimed.
@@ -84,70 +43,41 @@ impl<'a> Checker<'a> {
         before: &Configuration,
         path: &Path,
         claimed: &[f64],
-    ) -> Result<Found, Refusal> {
+    ) -> Result<Found<FaceConnection>, Refusal> {
         self.collide(action, before, path);
         let placements: Vec<Placement> = before.modules.iter().map(|module| module.placement).collect();
         let start = before.pose(path.module);
-        let grid = (0..=path.steps).map(|i| f64::from(i) / f64::from(path.steps));
-        let mut phases: Vec<f64> = grid.chain(claimed.iter().copied().filter(|p| (0.0..=1.0).contains(p))).collect();
-        phases.sort_unstable_by(f64::total_cmp);
-        phases.dedup();
+        let phases = phases(path.steps, claimed);
         let samples = phases.par_iter().map(|&phase| {
             let moving = Moving { module: path.module, pose: path.motion.pose(&start, phase) };
             let state = Transient { placements: &placements, moving: Some(moving), engaged: &path.engaged };
             self.sample(before, &state, phase)
         });
-        let samples: Vec<Sample> = samples.collect::<Result<_, _>>()?;
-        self.solves += samples.len() as u64;
-        let least = if self.required > 0.0 {
-            (self.required - claims::tolerance(self.required)).max(0.0)
-        } else {
-            self.required
-        };
-        self.judge(Some(action), Some(()), &samples.iter().collect::<Vec<_>>(), least);
-        let margin = samples.iter().map(|sample| sample.margin).reduce(Bracket::min);
-        Ok(Found { margin: margin.expect("a grid has phases"), samples, exact: false })
-    }
-
-    /// Books the first disconnected and the first unstable of some samples.
-    fn judge(&mut self, action: Option<usize>, moving: Option<()>, samples: &[&Sample], least: f64) {
-        let phase = |sample: &Sample| moving.map(|()| sample.phase);
-        if self.start.require.connected
-            && let Some(apart) = samples.iter().find(|sample| !sample.connected)
-        {
-            self.fail(action, phase(apart), Fault::Disconnected, None);
-        }
-        let weak = |sample: &&&Sample| !(sample.margin.lower >= least) || sample.margin.upper == f64::NEG_INFINITY;
-        if let Some(weak) = samples.iter().find(weak) {
-            let fault = Fault::Unstable { margin: weak.margin, required: self.required };
-            self.fail(action, phase(weak), fault, weak.weakest);
-        }
+        let samples: Vec<Sample<_>> = samples.collect::<Result<_, _>>()?;
+        Ok(self.judge.transit(action, samples))
     }
 
     /// Books the first thing that the moving module hits.
     fn collide(&mut self, action: usize, before: &Configuration, path: &Path) {
         let solid = |m: usize| Solid::new(before.module_type(m).body().shape.clone(), before.pose(m));
-        let environment = &before.environment;
-        let others = (0..before.modules.len()).filter(|&m| m != path.module);
-        let modules = others.map(|m| (Touched::Module(m), solid(m)));
-        let obstacles = environment.obstacles.iter().enumerate().map(|(i, o)| (Touched::Obstacle(i), Solid::from(o)));
-        let solids =
-            modules.chain(obstacles).map(|(what, solid)| (what, Surroundings { solids: vec![solid], ground: None }));
-        let ground = environment
-            .ground
-            .as_ref()
-            .map(|ground| (Touched::Ground, Surroundings { solids: Vec::new(), ground: Some(ground.height) }));
         let moving = solid(path.module);
-        let hit = |(what, around): (Touched, Surroundings)| {
-            first_collision(&moving, &path.motion, &around).map(|phase| (phase, what))
-        };
-        let first = solids.chain(ground).filter_map(hit).min_by(|(a, _), (b, _)| a.total_cmp(b));
+        let others = (0..before.modules.len()).filter(|&m| m != path.module);
+        let modules = others
+            .filter_map(|m| first_collision(&moving, &path.motion, &solid(m)).map(|phase| (phase, Touched::Module(m))));
+        let around = self.surroundings.first_collision(&moving, &path.motion);
+        let around = around.map(|(phase, what)| (phase, what.into()));
+        let first = modules.chain(around).min_by(|(a, _), (b, _)| a.total_cmp(b));
         if let Some((phase, with)) = first {
-            self.fail(Some(action), Some(phase), Fault::Collision { with }, None);
+            self.judge.fail(Some(action), Some(phase), Fault::Collision { with }, None);
         }
     }
 
-    fn sample(&self, modules: &Configuration, state: &Transient, phase: f64) -> Result<Sample, Refusal> {
+    fn sample(
+        &self,
+        modules: &Configuration,
+        state: &Transient,
+        phase: f64,
+    ) -> Result<Sample<FaceConnection>, Refusal> {
         let assembly = self.assembler.assemble(state);
         let assessment = assess(&assembly.structure, Question::VALUE).map_err(Refusal::Structure)?;
         let connection = |i: usize| ports(modules, &state.engaged[assembly.connections[i]]);

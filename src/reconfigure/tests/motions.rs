@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use proptest::prelude::*;
 
-use crate::geometry::{Solid, Surroundings, first_collision};
+use crate::geometry::{Solid, first_collision};
 use crate::robot::{Cell, Face, Orientation, Placement};
 
 use super::super::action::Action;
@@ -37,10 +37,7 @@ fn the_room_of_a_move_is_what_the_continuous_sweep_hits() {
     let pitch = cubes(&[[0; 3]], 0).pitch();
     let near = || (-2..=2).flat_map(|x| (-2..=2).flat_map(move |y| (-2..=2).map(move |z| [x, y, z])));
     for step in all_moves([0; 3]) {
-        let hit = |cell: &Cell| {
-            let around = Surroundings { solids: vec![cube_at(*cell)], ground: None };
-            first_collision(&cube_at([0; 3]), &motion(step, pitch), &around).is_some()
-        };
+        let hit = |cell: &Cell| first_collision(&cube_at([0; 3]), &motion(step, pitch), &cube_at(*cell)).is_some();
         let swept: BTreeSet<Cell> = near().filter(|cell| *cell != [0; 3]).filter(hit).collect();
         assert_eq!(step.room().into_iter().collect::<BTreeSet<_>>(), swept, "{step:?}");
     }
@@ -82,9 +79,8 @@ fn legal_by_definition(configuration: &crate::robot::Configuration) -> BTreeSet<
                 let path = next.path.unwrap();
                 let solid =
                     |m: usize| Solid::new(configuration.module_type(m).body().shape.clone(), configuration.pose(m));
-                let others = (0..count).filter(|&m| m != module).map(solid).collect();
-                let around = Surroundings { solids: others, ground: None };
-                if first_collision(&solid(module), &path.motion, &around).is_none() {
+                let mut others = (0..count).filter(|&m| m != module).map(solid);
+                if others.all(|other| first_collision(&solid(module), &path.motion, &other).is_none()) {
                     legal.insert(format!("{action:?}"));
                 }
             }

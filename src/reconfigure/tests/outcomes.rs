@@ -85,7 +85,7 @@ fn obstacles_are_gone_round_or_not_at_all() {
     // A plate just above the target leaves room to slide, none to pivot.
     let pitch = start.pitch();
     let plate = |gap: f64| Obstacle {
-        shape: Shape::Cuboid { half_extents: Vec3::new(2.0, 2.0, 0.01) },
+        shape: Shape::Cuboid { half_extents: Vec3::new(2.0, 2.0, 0.01) }.into(),
         pose: Pose::translation(0.0, 0.0, 2.0 * pitch + gap + 0.01),
         friction: 0.5,
     };

@@ -50,7 +50,7 @@ impl Linkage {
     }
 
     /// At how many angles the ports of a connection engage.
-    fn orientations(&self, connection: &Connection) -> i32 {
+    pub fn orientations(&self, connection: &Connection) -> i32 {
         let [a, b] = connection.ports.map(|port| &self.module_type(port.module).ports[port.port].place);
         orientations_between(a, b) as i32
     }

@@ -38,7 +38,7 @@ impl Catalogue {
     /// The connector with which two ports hold each other, as an index into
     /// [`Catalogue::connectors`]: of two the one of smaller strength (the first if equal), of a
     /// connector and a port without one the connector. `None` where they do not fit: two
-    /// surfaces, two points of which one has no connector, connectors of different models.
+    /// surfaces, two points of which one has no connector or no angle to engage at, connectors of different models.
     pub fn connector_between(&self, first: [usize; 2], second: [usize; 2]) -> Option<usize> {
         let [a, b] = [first, second].map(|[module_type, port]| &self.module_types[module_type].ports[port]);
         let is_point = |place: &PortPlace| matches!(place, PortPlace::Point { .. });
@@ -47,6 +47,9 @@ impl Catalogue {
             (false, true) => b.connector,
             (false, false) => None,
             (true, true) => {
+                if orientations_between(&a.place, &b.place) == 0 {
+                    return None;
+                }
                 let (a, b) = (a.connector?, b.connector?);
                 let (ca, cb) = (&self.connectors[a], &self.connectors[b]);
                 let same_model = matches!(
@@ -167,18 +170,21 @@ fn docked(a: &Pose, b: &Pose, tolerance: f64) -> bool {
     apart <= tolerance && za.dot(&zb) < 0.0 && za.cross(&zb).norm() <= MEETING
 }
 
-/// At how many angles, equally spaced over a turn, two ports engage: those at which both do. 1 with a surface,
-/// which has no angle.
-pub(super) fn orientations_between(a: &PortPlace, b: &PortPlace) -> u32 {
+/// At how many angles, equally spaced over a turn, two ports engage: those at which both do, none where one of them
+/// engages with surfaces only. 1 with a surface, which has no angle.
+pub fn orientations_between(a: &PortPlace, b: &PortPlace) -> u32 {
     match (a, b) {
-        (PortPlace::Point { orientations: m, .. }, PortPlace::Point { orientations: n, .. }) => common(*m, *n),
+        (PortPlace::Point { orientations: m, .. }, PortPlace::Point { orientations: n, .. }) if m.min(n) > &0 => {
+            common(*m, *n)
+        }
+        (PortPlace::Point { .. }, PortPlace::Point { .. }) => 0,
         _ => 1,
     }
 }
 
-/// The greatest common divisor; 1 if both are 0.
+/// The greatest common divisor.
 fn common(m: u32, n: u32) -> u32 {
-    if n == 0 { m.max(1) } else { common(n, m % n) }
+    if n == 0 { m } else { common(n, m % n) }
 }
 
 /// Frame in W of the connection of two ports, each of a module type and on a body with this pose in W: z from the

@@ -202,7 +202,7 @@ impl Pushed<'_> {
         }
         let iterate = Iterate { t: 1.0, ..iterate }.measured(program, &there);
         let problem = Problem { structure: self.structure, block: self.block, loads, program: &there };
-        let mut best = Best::new(self.block, 0.0, Reductions::ALL);
+        let mut best = Best::new(self.structure, self.block, 0.0, Reductions::ALL);
         best.prove(&problem, &iterate);
         if best.lower > 0.0 {
             self.keep_outer(&there, &best.mechanism, found);

@@ -1,5 +1,7 @@
 //! What is remembered of a neighbour, laid out for this structure.
 
+use std::sync::Arc;
+
 use crate::spatial::{Twist, Vec3, Wrench};
 
 use super::super::assess::Knowledge;
@@ -12,8 +14,8 @@ use super::super::part::Part;
 use super::super::program::Program;
 use super::super::structure::Structure;
 use super::field::face;
-use super::ladder::Ladder;
-use super::memory::{Held, Known, Memory, idle_links};
+use super::ladder::{Ladder, Sprung};
+use super::memory::{Held, Known, Memory, Springs, idle_links};
 
 /// Smallest force scale relative to the largest, as for a solve.
 const FLOOR: f64 = 1e-9;
@@ -26,7 +28,13 @@ pub(super) struct Carried<'s> {
     any: bool,
     /// Whether the neighbour fell, so that this one is likely to.
     falls: bool,
+    /// The neighbour, and its bodies that are those of this structure.
+    near: Option<(&'s Memory, &'s [Option<usize>])>,
     links: Vec<Held>,
+    /// Which of the neighbour's links each was.
+    known_as: Vec<Option<usize>>,
+    /// The springs of this structure's blocks.
+    springs: Vec<Springs>,
     /// Twists of the neighbour's bodies in W; `None` where a body was not there.
     before: Vec<Option<Twist>>,
     /// Twists relative to the root of each body's block, where they are known.
@@ -43,7 +51,10 @@ impl<'s> Carried<'s> {
             question,
             any: false,
             falls: false,
+            near: None,
             links: idle_links(structure),
+            known_as: Vec::new(),
+            springs: Vec::new(),
             before: vec![None; bodies],
             relative: vec![None; bodies],
             twists: vec![Twist::ZERO; bodies],
@@ -54,21 +65,25 @@ impl<'s> Carried<'s> {
     pub(super) fn new(
         structure: &'s Structure,
         question: Question,
-        memory: &Memory,
-        matching: &[Option<usize>],
+        memory: &'s Memory,
+        matching: &'s [Option<usize>],
     ) -> Self {
         let bodies = structure.bodies.len();
         let threshold = match question {
             Question::Decide(threshold) => threshold,
             Question::ToGap(_) | Question::Full => 1.0,
         };
+        let (links, known_as) = memory.links(structure, matching);
         Self {
             structure,
             question,
             // Fields of a state that no strength holds say nothing about strength.
             any: memory.utilisation.lower < f64::INFINITY,
             falls: memory.utilisation.lower > threshold,
-            links: memory.links(structure, matching),
+            near: Some((memory, matching)),
+            links,
+            known_as,
+            springs: Vec::new(),
             before: memory.twists(structure, matching),
             relative: vec![None; bodies],
             twists: vec![Twist::ZERO; bodies],
@@ -76,10 +91,11 @@ impl<'s> Carried<'s> {
     }
 
     /// What a neighbour of this structure can use, now that it is answered.
-    pub(super) fn into_memory(self, answer: &Assessment) -> Memory {
+    pub(super) fn into_memory(mut self, answer: &Assessment) -> Memory {
+        self.springs.sort_unstable_by_key(|springs| springs.bodies[0]);
         let bodies = self.structure.bodies.iter().zip(&self.twists);
         let bodies = bodies.map(|(body, twist)| Known { com: body.com, twist: *twist }).collect();
-        Memory { utilisation: answer.utilisation, bodies, links: self.links }
+        Memory { utilisation: answer.utilisation, bodies, links: self.links, springs: self.springs }
     }
 
     fn slot(&self, link: Link) -> usize {
@@ -98,6 +114,36 @@ impl<'s> Carried<'s> {
                 self.links[slot].points = own.iter().map(|force| axes * force).collect();
             }
         }
+    }
+
+    /// The springs that balanced a block of the same bodies, where all of its links are still there.
+    fn remembered(&self, block: &Block) -> Option<Springs> {
+        let (memory, matching) = self.near?;
+        let before: Option<Vec<usize>> = block.bodies.iter().map(|&body| matching[body]).collect();
+        let known = memory.springs(&before?)?;
+        let mut links = Vec::with_capacity(known.links.len());
+        for &link in &block.links {
+            let slot = self.slot(link);
+            let own = self.known_as[slot].and_then(|was| known.links.binary_search_by_key(&was, |link| link.0).ok());
+            links.extend(own.map(|own| (slot, known.links[own].1)));
+        }
+        let complete = links.len() == known.links.len();
+        complete.then(|| Springs { bodies: block.bodies.to_vec(), links, give: known.give.clone() })
+    }
+
+    /// The number of each link's spring, if it has one.
+    fn numbers(&self, block: &Block, springs: &Springs) -> Vec<Option<usize>> {
+        let number = |&link: &Link| {
+            let own = springs.links.binary_search_by_key(&self.slot(link), |link| link.0);
+            own.ok().map(|own| springs.links[own].1)
+        };
+        block.links.iter().map(number).collect()
+    }
+
+    /// Takes note of a link's wrench in its frame.
+    fn keep(&mut self, link: Link, wrench: &Wrench) {
+        let (axes, slot) = (LinkFrame::new(self.structure, link).axes, self.slot(link));
+        self.links[slot].wrench = Wrench::new(axes * wrench.force, axes * wrench.torque);
     }
 
     /// The motion of a block's root and where it is.
@@ -169,10 +215,23 @@ impl Knowledge for Carried<'_> {
             let axes = LinkFrame::new(structure, link).axes;
             self.links[self.slot(link)].points.iter().map(|force| axes.tr_mul(force)).collect()
         };
-        let climbed = Ladder::new(problem, self.question).climb(self.motion(block), field, known, self.falls);
+        let remembered = self.remembered(block);
+        let sprung =
+            remembered.as_ref().map(|springs| Sprung { give: &springs.give, springs: self.numbers(block, springs) });
+        let climbed = Ladder::new(problem, self.question).climb(self.motion(block), field, known, self.falls, sprung);
+        let renewed = climbed.give.map(|give| Springs {
+            bodies: block.bodies.to_vec(),
+            links: block.links.iter().enumerate().map(|(l, &link)| (self.slot(link), l)).collect(),
+            give: Arc::new(give),
+        });
+        self.springs.extend(renewed.or(remembered));
         // A solver's wrenches are shared in another way.
         self.remember(block, if climbed.part.answers(self.question, 0.0) { &climbed.points } else { &[] });
         Some(climbed.part)
+    }
+
+    fn note_bridge(&mut self, link: Link, wrench: &Wrench) {
+        self.keep(link, wrench);
     }
 
     fn note(&mut self, block: &Block, part: &Part) {
@@ -190,8 +249,7 @@ impl Knowledge for Carried<'_> {
             self.relative[body] = Some(*twist);
         }
         for (&link, wrench) in block.links.iter().zip(wrenches.into_iter().flatten()) {
-            let (axes, slot) = (LinkFrame::new(self.structure, link).axes, self.slot(link));
-            self.links[slot].wrench = Wrench::new(axes * wrench.force, axes * wrench.torque);
+            self.keep(link, wrench);
         }
     }
 

@@ -20,7 +20,7 @@ use super::field::{Field, face};
 use super::room::Rooms;
 
 /// Imbalance, relative to what flows through a body, that needs no correction.
-const BALANCED: f64 = 1e-12;
+const BALANCED: f64 = 1e-11;
 
 /// Rounds of correction after a change; each is as accurate as the factorisation.
 const REFINEMENTS: usize = 2;
@@ -29,6 +29,14 @@ const REFINEMENTS: usize = 2;
 pub(super) struct Give {
     network: Network<6>,
     rooms: Rooms,
+    /// What its balance rows are scaled by.
+    row_factor: Vec<f64>,
+}
+
+impl std::fmt::Debug for Give {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Give").field("links", &self.rooms.metrics.len()).finish_non_exhaustive()
+    }
 }
 
 /// A change of the field, and the twists that it comes from.
@@ -41,7 +49,7 @@ impl Give {
     pub(super) fn new(problem: &Problem<'_>, rooms: Rooms) -> Self {
         let mut network = Network::new(problem.program, true);
         network.factorise(&rooms.metrics, |link| flexibility_root(&rooms.metrics[link]));
-        Self { network, rooms }
+        Self { network, rooms, row_factor: problem.program.row_factor.clone() }
     }
 
     /// The same block at other rooms: the pattern stays.
@@ -58,7 +66,7 @@ impl Give {
         for (lacking, push) in lacking.iter_mut().zip(pushes(problem, &self.rooms.centres.wrenches)) {
             *lacking += push * centring;
         }
-        let mut change = self.answer(problem, &lacking);
+        let mut change = self.answer(problem, &lacking, Some);
         change.field.add(&self.rooms.centres, centring);
         change
     }
@@ -66,45 +74,70 @@ impl Give {
     /// The twists of the step towards the middles of the cones that leaves the balance as it
     /// is. Near the middle of the whole, every link admits them with something to spare.
     pub(super) fn centring(&self, problem: &Problem<'_>) -> Vec<Twist> {
-        let rows = rows(problem, &pushes(problem, &self.rooms.centres.wrenches));
+        let rows = self.rows(&pushes(problem, &self.rooms.centres.wrenches));
         twists(problem, &self.network.solve(&rows, |_, _| {}))
     }
 
     /// Corrects what rounding left of the imbalance of `field`; whether it balances then.
     pub(super) fn refine(&self, problem: &Problem<'_>, field: &mut Field) -> bool {
+        self.refine_by(problem, field, Some)
+    }
+
+    /// As [`refine`](Self::refine) with the springs of a neighbouring block of the same bodies,
+    /// `spring` of each link; a link without one stays as it is. Any imbalance will do, as long
+    /// as the springs are where they were.
+    pub(super) fn refine_by(
+        &self,
+        problem: &Problem<'_>,
+        field: &mut Field,
+        spring: impl Fn(usize) -> Option<usize>,
+    ) -> bool {
         for _ in 0..REFINEMENTS {
             let lacking = lacking(problem, &field.wrenches);
-            if imbalance(problem, &lacking) <= BALANCED {
+            if balances(problem, &lacking) {
                 return true;
             }
-            field.add(&self.answer(problem, &lacking).field, 1.0);
+            field.add(&self.answer(problem, &lacking, &spring).field, 1.0);
         }
         balances(problem, &lacking(problem, &field.wrenches))
     }
 
     /// The least change of the field that holds `wrenches` on the bodies.
-    fn answer(&self, problem: &Problem<'_>, wrenches: &[Wrench]) -> Change {
+    fn answer(&self, problem: &Problem<'_>, wrenches: &[Wrench], spring: impl Fn(usize) -> Option<usize>) -> Change {
         let Problem { structure, block, program, .. } = *problem;
         let links = block.links.len();
-        let mut passed = vec![None; links];
-        let v = self.network.solve(&rows(problem, wrenches), |link, wrench| passed[link] = Some(wrench));
-        let mut field =
-            Field { wrenches: Vec::with_capacity(links), points: Vec::with_capacity(self.rooms.points.len()) };
-        let mut points = self.rooms.points.iter();
+        let mut passed = vec![None; self.rooms.metrics.len()];
+        let mut v = self.network.solve(&self.rows(wrenches), |link, wrench| passed[link] = Some(wrench));
+        for ((v, own), factor) in v.iter_mut().zip(&self.row_factor).zip(&program.row_factor) {
+            *v *= own / factor;
+        }
+        let mut field = Field { wrenches: Vec::with_capacity(links), points: Vec::new() };
         for (l, &link) in block.links.iter().enumerate() {
-            let change = passed[l].unwrap_or_else(|| {
+            let face = face(structure, link);
+            let Some(own) = spring(l) else {
+                field.wrenches.push(Wrench::ZERO);
+                field.points.extend(face.iter().flat_map(|face| face.points).map(|_| Vec3::zeros()));
+                continue;
+            };
+            let change = passed[own].unwrap_or_else(|| {
                 let [vx, vy, vz, wx, wy, wz] = relative(&program.sides[l], &v);
-                if let Some(face) = face(structure, link) {
+                if let Some(face) = face {
                     let apart = Twist::new(Vec3::new(vx, vy, vz), Vec3::new(wx, wy, wz));
-                    for (p, metric) in face.points.iter().zip(&mut points) {
+                    for (p, metric) in face.points.iter().zip(&self.rooms.points[self.rooms.first_point[own]..]) {
                         field.points.push(-(metric * apart.at(&Vec3::new(p[0], p[1], 0.0))));
                     }
                 }
-                self.rooms.metrics[l] * Vector6::new(vx, vy, vz, wx, wy, wz)
+                self.rooms.metrics[own] * Vector6::new(vx, vy, vz, wx, wy, wz)
             });
             field.wrenches.push(Wrench::new(-change.fixed_rows::<3>(0), -change.fixed_rows::<3>(3)));
         }
         Change { field, twists: twists(problem, &v) }
+    }
+
+    /// Wrenches on the bodies as scaled balance rows.
+    fn rows(&self, wrenches: &[Wrench]) -> Vec<f64> {
+        let components = wrenches.iter().flat_map(|w| w.force.iter().chain(w.torque.iter()));
+        components.zip(&self.row_factor).map(|(w, factor)| w * factor).collect()
     }
 }
 
@@ -128,7 +161,7 @@ pub(super) fn lacking(problem: &Problem<'_>, field: &[Wrench]) -> Vec<Wrench> {
 
 /// Whether `lacking` is nothing but rounding.
 pub(super) fn balances(problem: &Problem<'_>, lacking: &[Wrench]) -> bool {
-    imbalance(problem, lacking) <= 10.0 * BALANCED
+    imbalance(problem, lacking) <= BALANCED
 }
 
 /// The largest of what bodies lack, relative to what flows through them.
@@ -138,12 +171,6 @@ fn imbalance(problem: &Problem<'_>, lacking: &[Wrench]) -> f64 {
     let relative =
         lacking.iter().zip(sizes).map(|(w, (force, lever))| (w.force.norm() + w.torque.norm() / lever) / force);
     relative.fold(0.0, f64::max)
-}
-
-/// Wrenches on the bodies as scaled balance rows.
-fn rows(problem: &Problem<'_>, wrenches: &[Wrench]) -> Vec<f64> {
-    let components = wrenches.iter().flat_map(|w| w.force.iter().chain(w.torque.iter()));
-    components.zip(&problem.program.row_factor).map(|(w, factor)| w * factor).collect()
 }
 
 /// The twists that scaled multipliers of the balances stand for.

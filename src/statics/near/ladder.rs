@@ -10,6 +10,7 @@ use super::super::connector::Connector;
 use super::super::demand::{WrenchError, demand_at_most};
 use super::super::part::Part;
 use super::super::rung::Rung;
+use super::super::structure::Structure;
 use super::field::{Field, face};
 use super::give::{Give, balances, lacking};
 use super::opening::Opening;
@@ -20,9 +21,12 @@ use super::room::Rooms;
 /// Each costs a factorisation; later ones rarely decide.
 const ROUNDS: usize = 4;
 
+/// Demand, over the level that is asked for, from which on more rounds are hopeless after each.
+const HOPELESS: [f64; ROUNDS] = [f64::INFINITY, 2.5, 1.2, 0.0];
+
 /// Share of the way to the middles of the cones in the first round, which starts
 /// from a field that was good where it comes from, and in later ones.
-const CENTRING: [f64; 2] = [0.3, 0.7];
+const CENTRING: [f64; 2] = [0.5, 0.9];
 
 /// Strengths, relative to the rated ones, at which a block is asked for.
 fn level(question: Question) -> Option<f64> {
@@ -42,6 +46,15 @@ pub(super) struct Ladder<'p> {
     demands: Vec<f64>,
     mechanism: Vec<Twist>,
     shares: Vec<f64>,
+    /// The springs that balanced it.
+    give: Option<Give>,
+}
+
+/// Springs that balanced a neighbouring block of the same bodies.
+pub(super) struct Sprung<'m> {
+    pub give: &'m Give,
+    /// Of each link, if it was there.
+    pub springs: Vec<Option<usize>>,
 }
 
 /// What carried fields say about a block.
@@ -49,6 +62,8 @@ pub(super) struct Climbed {
     pub part: Part,
     /// Forces at the points of its faces, one face after the other.
     pub points: Vec<Vec3>,
+    /// The springs that balanced it, where none that were known did.
+    pub give: Option<Give>,
 }
 
 impl<'p> Ladder<'p> {
@@ -62,17 +77,19 @@ impl<'p> Ladder<'p> {
             demands: vec![0.0; links],
             mechanism: vec![Twist::ZERO; bodies],
             shares: vec![0.0; links],
+            give: None,
         }
     }
 
     /// Tries `twists`, if any, and `wrenches`; where the neighbour `falls`, the twists first.
-    /// `known` has what the points of a face carried.
+    /// `known` has what the points of a face carried, `sprung` what balanced them.
     pub(super) fn climb(
         mut self,
         twists: Option<Vec<Twist>>,
         wrenches: Vec<Wrench>,
         known: impl Fn(Link) -> Vec<Vec3>,
         falls: bool,
+        sprung: Option<Sprung<'_>>,
     ) -> Climbed {
         let twists = twists.unwrap_or_default();
         if falls {
@@ -84,7 +101,12 @@ impl<'p> Ladder<'p> {
         }
         if let (false, Some(level)) = (self.answered(), level(self.question)) {
             let field = Field::new(&self.problem, wrenches, level, known);
-            self.repair(field, level, &twists);
+            if let Some(sprung) = sprung {
+                self.balance(&field, level, &sprung);
+            }
+            if !self.answered() {
+                self.repair(field, level, &twists);
+            }
         } else if !falls && !self.answered() {
             self.try_motion(&twists);
         }
@@ -103,7 +125,7 @@ impl<'p> Ladder<'p> {
             decided_by: Rung::CarriedOver,
             unproved: None,
         };
-        Climbed { part, points: self.field.points }
+        Climbed { part, points: self.field.points, give: self.give }
     }
 
     fn answered(&self) -> bool {
@@ -117,26 +139,36 @@ impl<'p> Ladder<'p> {
         }
     }
 
+    /// Upper bound from the field balanced by springs that are known.
+    fn balance(&mut self, field: &Field, level: f64, sprung: &Sprung<'_>) {
+        let mut field = field.clone();
+        if sprung.give.refine_by(&self.problem, &mut field, |link| sprung.springs[link]) {
+            self.keep_upper(&field, level);
+        }
+    }
+
     /// Upper bounds from the field balanced and put back into its cones in turns, lower
     /// bounds from the way in which the loads win where that is not enough.
     fn repair(&mut self, mut field: Field, level: f64, twists: &[Twist]) {
-        let mut give: Option<Give> = None;
         for round in 0..ROUNDS {
             let rooms = Rooms::new(&self.problem, &field, level);
-            let give = match &mut give {
-                Some(give) => {
+            let give = match self.give.take() {
+                Some(mut give) => {
                     give.renew(rooms);
                     give
                 }
-                None => give.insert(Give::new(&self.problem, rooms)),
+                None => Give::new(&self.problem, rooms),
             };
             let share = CENTRING[round.min(1)];
             let balancing = give.balancing(&self.problem, &field, share);
             field.add(&balancing.field, 1.0);
-            if give.refine(&self.problem, &mut field) {
+            // Where it is too large already, the last digits do not matter.
+            let most = self.most(&field, level);
+            if most.is_some_and(|most| most <= level) && give.refine(&self.problem, &mut field) {
                 self.keep_upper(&field, level);
             }
-            if self.answered() {
+            let give = self.give.insert(give);
+            if self.question.is_answered_by(&self.bracket) {
                 return;
             }
             let centring = give.centring(&self.problem);
@@ -148,7 +180,7 @@ impl<'p> Ladder<'p> {
             if round == 0 && !twists.is_empty() && !self.answered() {
                 self.keep_lower(&opening, twists.to_vec());
             }
-            if self.answered() {
+            if self.answered() || most.is_some_and(|most| most > HOPELESS[round] * level) {
                 return;
             }
             put_back(&self.problem, &mut field, level);
@@ -186,16 +218,15 @@ impl<'p> Ladder<'p> {
         }
     }
 
-    /// Keeps what a balanced field proves, of faces by their points.
+    /// The largest demand in a field, if it is known and finite.
+    fn most(&self, field: &Field, level: f64) -> Option<f64> {
+        let demands = self.problem.demands(&field.wrenches, demand(self.problem.structure, &field.points, level))?;
+        Some(demands.into_iter().fold(0.0, f64::max))
+    }
+
+    /// Keeps what a balanced field proves.
     fn keep_upper(&mut self, field: &Field, level: f64) {
-        let structure = self.problem.structure;
-        let mut points = &field.points[..];
-        let demand = |link: Link, connector: &Connector, wrench: &Wrench, error: &WrenchError| {
-            let Some(face) = face(structure, link) else { return demand_at_most(connector, wrench, error, level) };
-            let (own, others) = points.split_at(face.points.len());
-            points = others;
-            face.at_most(wrench, own, level).unwrap_or_else(|| demand_at_most(connector, wrench, error, level))
-        };
+        let demand = demand(self.problem.structure, &field.points, level);
         let Some((upper, demands)) = self.problem.upper_bound_by(&field.wrenches, self.mechanism(), demand) else {
             return;
         };
@@ -204,5 +235,19 @@ impl<'p> Ladder<'p> {
             self.field = field.clone();
             self.demands = demands;
         }
+    }
+}
+
+/// Demands of connections, of faces by the forces at their `points`.
+fn demand(
+    structure: &Structure,
+    mut points: &[Vec3],
+    level: f64,
+) -> impl FnMut(Link, &Connector, &Wrench, &WrenchError) -> f64 {
+    move |link, connector, wrench, error| {
+        let Some(face) = face(structure, link) else { return demand_at_most(connector, wrench, error, level) };
+        let (own, others) = points.split_at(face.points.len());
+        points = others;
+        face.at_most(wrench, own, level).unwrap_or_else(|| demand_at_most(connector, wrench, error, level))
     }
 }

@@ -1,12 +1,14 @@
 //! What is kept of an answer, and found again in a neighbouring structure.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use crate::spatial::{Twist, Vec3, Wrench};
 
 use super::super::assessment::Bracket;
 use super::super::structure::{Anchor, Structure};
 use super::super::validate::InvalidStructure;
+use super::give::Give;
 
 /// How far a body or link may be from where it was and still count as there,
 /// relative to its distance from the origin: positions that were computed anew.
@@ -14,13 +16,26 @@ const MOVED: f64 = 1e-9;
 
 /// What a state near an assessed one can use of its answer.
 ///
-/// A few vectors per body, connection and contact. Plain owned data: it can be cloned, sent to
-/// other threads, and used for any number of neighbours.
+/// A few vectors per body, connection and contact, and a factored matrix per block with
+/// cycles, which clones and neighbours share. Immutable data: it can be cloned, sent to other
+/// threads, and used for any number of neighbours.
 #[derive(Clone, Debug)]
 pub struct Memory {
     pub(super) utilisation: Bracket,
     pub(super) bodies: Vec<Known>,
     pub(super) links: Vec<Held>,
+    /// In the order of their first bodies.
+    pub(super) springs: Vec<Springs>,
+}
+
+/// How a block gave way when it was last balanced.
+#[derive(Clone, Debug)]
+pub(super) struct Springs {
+    pub bodies: Vec<usize>,
+    /// Per spring its link, of all connections, then contacts, in ascending order, and its
+    /// number in `give`.
+    pub links: Vec<(usize, usize)>,
+    pub give: Arc<Give>,
 }
 
 /// A body and its motion.
@@ -135,9 +150,18 @@ impl Memory {
             .collect()
     }
 
-    /// The links of `structure`, each with what it carried if it was there.
-    pub(super) fn links(&self, structure: &Structure, matching: &[Option<usize>]) -> Vec<Held> {
+    /// The springs between bodies, which come in their order.
+    pub(super) fn springs(&self, bodies: &[usize]) -> Option<&Springs> {
+        let first = bodies.first()?;
+        let found = self.springs.binary_search_by_key(first, |springs| springs.bodies[0]).ok()?;
+        Some(&self.springs[found]).filter(|springs| springs.bodies == bodies)
+    }
+
+    /// The links of `structure`, each with what it carried if it was there, and which
+    /// one that was.
+    pub(super) fn links(&self, structure: &Structure, matching: &[Option<usize>]) -> (Vec<Held>, Vec<Option<usize>>) {
         let mut links = idle_links(structure);
+        let mut before = vec![None; links.len()];
         let known = |anchor: Anchor| match anchor {
             Anchor::World => Some(Anchor::World),
             Anchor::Body(body) => matching[body].map(Anchor::Body),
@@ -145,7 +169,7 @@ impl Memory {
         // Mostly the next one here is the next, or the next but one, there.
         let mut next = 0;
         let mut by_ends = None;
-        for link in &mut links {
+        for (link, known_as) in links.iter_mut().zip(&mut before) {
             let [Some(a), Some(b)] = link.ends.map(known) else { continue };
             let same = |i: &usize| {
                 let before = &self.links[*i];
@@ -159,10 +183,11 @@ impl Memory {
             if let Some(i) = found {
                 link.wrench = self.links[i].wrench;
                 link.points.clone_from(&self.links[i].points);
+                *known_as = found;
                 next = i + 1;
             }
         }
-        links
+        (links, before)
     }
 
     fn by_ends(&self) -> HashMap<[Anchor; 2], Vec<usize>> {
@@ -213,11 +238,12 @@ mod tests {
             com: body.com,
             twist: Twist::new(Vec3::x() * (i + 1) as f64, Vec3::zeros()),
         };
-        Memory { utilisation: Bracket::exact(0.5), bodies: bodies.map(known).collect(), links }
+        let bodies = bodies.map(known).collect();
+        Memory { utilisation: Bracket::exact(0.5), bodies, links, springs: Vec::new() }
     }
 
     fn carried(memory: &Memory, structure: &Structure, matching: &[Option<usize>]) -> Vec<f64> {
-        memory.links(structure, matching).iter().map(|link| link.wrench.force.x).collect()
+        memory.links(structure, matching).0.iter().map(|link| link.wrench.force.x).collect()
     }
 
     #[test]

@@ -3,9 +3,9 @@
 use crate::spatial::{Pose, Vec3};
 use crate::statics::{Connector, Model};
 
-use super::catalogue::Catalogue;
-use super::module_type::{BodyType, LatticeType, ModuleType};
-use super::shape::Shape;
+use crate::robot::catalogue::Catalogue;
+use crate::robot::module_type::{BodyType, LatticeType, ModuleType};
+use crate::robot::shape::Shape;
 
 /// Edge length in m. Published: M-Blocks are cubes of 50 mm (J. W. Romanishin,
 /// K. Gilpin, D. Rus: "M-Blocks: momentum-driven, magnetic modular robots",
@@ -52,15 +52,7 @@ const HINGE_DRIVE: f64 = 0.1;
 /// As [`HINGE_DRIVE`], for the latched variant. **Estimate**: three times a cube.
 const LATCHED_HINGE_DRIVE: f64 = 0.15;
 
-/// Names of the built-in catalogues.
-pub const BUILT_IN: [&str; 1] = ["cube"];
-
 impl Catalogue {
-    /// The built-in catalogue of this name, if there is one.
-    pub fn built_in(name: &str) -> Option<Self> {
-        (name == BUILT_IN[0]).then(Self::cube)
-    }
-
     /// Cubes of the size and mass of M-Blocks (50 mm, 143 g), in two types that
     /// differ in how they hold each other:
     ///
@@ -93,7 +85,7 @@ impl Catalogue {
             },
         };
         Self {
-            name: BUILT_IN[0].into(),
+            name: "cube".into(),
             connectors: vec![magnet, hinge("hinge", HINGE_DRIVE), latch, hinge("latched-hinge", LATCHED_HINGE_DRIVE)],
             module_types: vec![cube_type("cube", 0, 1), cube_type("cube-latched", 2, 3)],
         }

@@ -1,0 +1,252 @@
+//! Which actions are legal in a state of a linkage, from their definitions, and where they lead.
+
+use nalgebra::Unit;
+use petgraph::unionfind::UnionFind;
+
+use crate::geometry::Motion;
+use crate::robot::linkage::{Code, Connection, Linkage, Spot};
+use crate::spatial::{Pose, Vec3};
+
+use super::super::action::{Action, Half};
+use super::super::assembly::BodyOf;
+use super::Fault;
+
+/// A legal action: the state after it, and the way of what moves.
+#[derive(Clone, Debug)]
+pub(super) struct Transition {
+    pub after: Linkage,
+    pub path: Option<Path>,
+}
+
+/// The way of one side of a joint or connection.
+#[derive(Clone, Debug)]
+pub(super) struct Path {
+    /// The bodies that move.
+    pub carried: Vec<BodyOf>,
+    pub motion: Motion,
+    /// Equal steps in which the way is checked.
+    pub steps: u32,
+}
+
+/// Angle in degrees between the phases at which a turn is checked.
+const CHECKED_DEGREES: f64 = 3.0;
+
+/// How far the angle of a roll may be from its step, in degrees: what rounding three angles to micro-degrees
+/// at either end can make, ten times over.
+const STEP_DEGREES: f64 = 3e-5;
+
+/// Where an action leads from a state.
+pub(super) fn transition(before: &Linkage, action: &Action) -> Result<Transition, Fault> {
+    match *action {
+        Action::Attach(connection) => attach(before, connection),
+        Action::Detach(connection) => detach(before, connection),
+        Action::Roll { connection, to, carried } => roll(before, connection, to, carried),
+        Action::Rotate { module, joint, to, carried } => rotate(before, module, joint, to, carried),
+    }
+}
+
+fn known(before: &Linkage, connection: Connection) -> Result<(), Fault> {
+    let is_known = connection
+        .ports
+        .iter()
+        .all(|port| port.module < before.modules.len() && port.port < before.module_type(port.module).ports.len());
+    if is_known { Ok(()) } else { Err(Fault::UnknownModule) }
+}
+
+fn attach(before: &Linkage, connection: Connection) -> Result<Transition, Fault> {
+    known(before, connection)?;
+    if before.connections.contains(&connection) {
+        return Err(Fault::AlreadyEngaged);
+    }
+    let [a, b] = connection.modules();
+    if a == b || before.engagement(&connection).is_none() {
+        return Err(Fault::FacesApart);
+    }
+    let mut after = before.clone();
+    after.connections.push(connection);
+    after.connections.sort_unstable();
+    Ok(Transition { after, path: None })
+}
+
+fn detach(before: &Linkage, connection: Connection) -> Result<Transition, Fault> {
+    known(before, connection)?;
+    if !before.connections.contains(&connection) {
+        return Err(Fault::NotEngaged);
+    }
+    let mut after = before.clone();
+    after.connections.retain(|engaged| *engaged != connection);
+    Ok(Transition { after, path: None })
+}
+
+fn roll(before: &Linkage, connection: Connection, to: Spot, carried: usize) -> Result<Transition, Fault> {
+    known(before, connection)?;
+    let Some(side) = connection.ports.iter().find(|port| port.module == carried) else {
+        return Err(Fault::UnknownModule);
+    };
+    if !before.connections.contains(&connection) {
+        return Err(Fault::NotHeld);
+    }
+    let Code::OnSurface(from) = before.code(&connection) else { return Err(Fault::Unable) };
+    let is_point = |module: usize, port: usize| before.module_type(module).ports[port].is_point();
+    let [a, b] = connection.ports;
+    let (point, ball) = if is_point(a.module, a.port) { (a, b) } else { (b, a) };
+    let step = before.module_type(point.module).roll_step_degrees.ok_or(Fault::Unable)?;
+
+    // The connection's rotation in the ball's frame goes from one spot to the other by a turn about a line
+    // through the ball's centre.
+    let turn = to.rotation() * from.rotation().inverse();
+    let (axis, angle) = turn.axis_angle().ok_or(Fault::NoSuchMotion)?;
+    if !((angle.to_degrees() - step).abs() <= STEP_DEGREES) {
+        return Err(Fault::NoSuchMotion);
+    }
+    let ball_body = before.module_type(ball.module).ports[ball.port].body;
+    let frame = before.body_of(ball);
+    let centre = frame * before.module_type(ball.module).bodies[ball_body].shape_pose;
+    let in_world = frame.rotation * axis;
+    // Carrying the ball's side turns it the other way about the port.
+    let signed = if side.module == point.module { angle } else { -angle };
+    let motion = Motion::Rotation { centre: centre.translation.vector, axis: in_world, angle: signed };
+    let own = before.module_type(side.module).ports[side.port].body;
+    let held = |joined: &Joined| joined.without_connection(before, connection);
+    carry(before, held, BodyOf { module: side.module, body: own }, motion, |_| {}, connection.modules())
+}
+
+fn rotate(before: &Linkage, module: usize, joint: usize, to: i32, carried: Half) -> Result<Transition, Fault> {
+    if module >= before.modules.len() {
+        return Err(Fault::UnknownModule);
+    }
+    let module_type = before.module_type(module);
+    let kind = module_type.joints.get(joint).ok_or(Fault::UnknownModule)?;
+    if !module_type.rotates {
+        return Err(Fault::Unable);
+    }
+    if !kind.allows(to) {
+        return Err(Fault::BeyondRange);
+    }
+    let from = before.modules[module].joints[joint];
+    let step = [1, -1].into_iter().find(|step| kind.canonical(from.wrapping_add(*step)) == kind.canonical(to));
+    let step = step.filter(|_| kind.canonical(to) == to).ok_or(Fault::NoSuchMotion)?;
+
+    let body = match carried {
+        Half::Parent => kind.parent,
+        Half::Child => kind.child,
+    };
+    let parent = before.body_poses(module)[kind.parent];
+    let angle = (f64::from(step) * kind.step_degrees).to_radians();
+    let signed = match carried {
+        Half::Parent => -angle,
+        Half::Child => angle,
+    };
+    let axis = Unit::new_normalize(parent.rotation * kind.axis.into_inner());
+    let origin: Vec3 = (parent * nalgebra::Point3::from(kind.origin)).coords;
+    let motion = Motion::Rotation { centre: origin, axis, angle: signed };
+    let held = |joined: &Joined| joined.without_joint(before, module, joint);
+    carry(before, held, BodyOf { module, body }, motion, |after| after.modules[module].joints[joint] = to, [module; 2])
+}
+
+/// Turns what holds together with one body once a joint or connection is left out. The two modules (or the
+/// one) that meet there must be on different sides.
+fn carry(
+    before: &Linkage,
+    held: impl Fn(&Joined) -> UnionFind<usize>,
+    body: BodyOf,
+    motion: Motion,
+    turn: impl Fn(&mut Linkage),
+    meeting: [usize; 2],
+) -> Result<Transition, Fault> {
+    let joined = Joined::new(before);
+    let sides = held(&joined);
+    let whole = joined.whole(before);
+    let here = joined.index(body);
+    let moves = |body: BodyOf| sides.equiv(joined.index(body), here);
+    // If leaving it out does not part what it joins, it is no bridge.
+    let parted = joined
+        .bodies
+        .iter()
+        .any(|&other| meeting.contains(&other.module) && whole.equiv(joined.index(other), here) && !moves(other));
+    if !parted {
+        return Err(Fault::NotABridge);
+    }
+    let carried: Vec<BodyOf> = joined.bodies.iter().copied().filter(|&body| moves(body)).collect();
+    if carried.iter().any(|body| body.body == 0 && before.modules[body.module].fixed) {
+        return Err(Fault::FixedModule);
+    }
+    let mut after = before.clone();
+    for body in carried.iter().filter(|body| body.body == 0) {
+        after.modules[body.module].pose = motion.pose(&before.modules[body.module].pose, 1.0);
+    }
+    turn(&mut after);
+    let Motion::Rotation { angle, .. } = motion else { unreachable!("a linkage turns") };
+    let steps = (angle.abs().to_degrees() / CHECKED_DEGREES).ceil().max(1.0) as u32;
+    Ok(Transition { after, path: Some(Path { carried, motion, steps }) })
+}
+
+/// The bodies of a linkage, and what joins them.
+pub(super) struct Joined {
+    first: Vec<usize>,
+    pub bodies: Vec<BodyOf>,
+}
+
+impl Joined {
+    pub fn new(linkage: &Linkage) -> Self {
+        let mut first = Vec::with_capacity(linkage.modules.len());
+        let mut bodies = Vec::new();
+        for module in 0..linkage.modules.len() {
+            first.push(bodies.len());
+            bodies.extend((0..linkage.module_type(module).bodies.len()).map(|body| BodyOf { module, body }));
+        }
+        Self { first, bodies }
+    }
+
+    pub fn index(&self, body: BodyOf) -> usize {
+        self.first[body.module] + body.body
+    }
+
+    /// What holds together by joints and connections.
+    pub fn whole(&self, linkage: &Linkage) -> UnionFind<usize> {
+        self.sides(linkage, |_, _| true, |_| true)
+    }
+
+    fn without_connection(&self, linkage: &Linkage, left_out: Connection) -> UnionFind<usize> {
+        self.sides(linkage, |_, _| true, |connection| connection != left_out)
+    }
+
+    fn without_joint(&self, linkage: &Linkage, module: usize, joint: usize) -> UnionFind<usize> {
+        self.sides(linkage, |m, j| (m, j) != (module, joint), |_| true)
+    }
+
+    fn sides(
+        &self,
+        linkage: &Linkage,
+        joint_holds: impl Fn(usize, usize) -> bool,
+        connection_holds: impl Fn(Connection) -> bool,
+    ) -> UnionFind<usize> {
+        let mut sets = UnionFind::new(self.bodies.len());
+        for module in 0..linkage.modules.len() {
+            for (index, joint) in linkage.module_type(module).joints.iter().enumerate() {
+                if joint_holds(module, index) {
+                    sets.union(self.first[module] + joint.parent, self.first[module] + joint.child);
+                }
+            }
+        }
+        for &connection in linkage.connections.iter().filter(|&&connection| connection_holds(connection)) {
+            let [a, b] = connection.ports.map(|port| {
+                let body = linkage.module_type(port.module).ports[port.port].body;
+                self.index(BodyOf { module: port.module, body })
+            });
+            sets.union(a, b);
+        }
+        sets
+    }
+}
+
+/// Poses of all bodies at a phase of a way.
+pub(super) fn poses_at(before: &Linkage, path: &Path, phase: f64) -> Vec<Vec<Pose>> {
+    let mut poses: Vec<Vec<Pose>> = (0..before.modules.len()).map(|module| before.body_poses(module)).collect();
+    let displacement = path.motion.at(phase);
+    for body in &path.carried {
+        let pose = &mut poses[body.module][body.body];
+        *pose = displacement * *pose;
+    }
+    poses
+}
