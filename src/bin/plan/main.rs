@@ -34,8 +34,8 @@ fn main() -> ExitCode {
     let exit = match (arguments.command, arguments.planning) {
         (Some(Command::Verify(verify)), _) => verify::run(&verify),
         (Some(Command::Check(check)), _) => check::run(&check),
-        (Some(Command::LoadRange(range)), _) => load_range::run(&range),
         (Some(Command::Convert(convert)), _) => convert::run(&convert),
+        (Some(Command::LoadRange(range)), _) => load_range::run(&range),
         (Some(Command::Schema(schema)), _) => schema::run(&schema),
         (None, Some(planning)) => search::run(&planning),
         (None, None) => {
