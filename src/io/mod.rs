@@ -49,6 +49,6 @@ pub use read::{
 pub use schema::{schema, schema_names};
 pub use turn::AxisAngle;
 pub use write::{
-    Unwritable, in_space_because, write_catalogue, write_certificate, write_check, write_configuration, write_linkage, write_linkage_plan,
-    write_load_range, write_plan, write_rofi, write_structure,
+    Unwritable, in_space_because, write_catalogue, write_certificate, write_check, write_configuration, write_linkage,
+    write_linkage_plan, write_load_range, write_plan, write_rofi, write_structure,
 };

@@ -2,9 +2,7 @@
 
 use std::fmt::Display;
 
-use steadfast::io::{
-    LatticeProblem, LinkageProblem, PlanDocument, Unwritable, write_linkage_plan, write_plan,
-};
+use steadfast::io::{LatticeProblem, LinkageProblem, PlanDocument, Unwritable, write_linkage_plan, write_plan};
 use steadfast::reconfigure::linkage::assembly::{BodyOf, Held, Touched};
 use steadfast::reconfigure::linkage::{self, Half};
 use steadfast::reconfigure::replay::{Replay, replay};
@@ -13,11 +11,11 @@ use steadfast::robot::linkage::{Linkage, MICRO, Port, Spot};
 use steadfast::robot::{Cell, Configuration, FaceConnection};
 
 /// A planning problem of one family of robots.
-pub trait Family: Clone {
+pub trait Family: Sync {
     /// What its modules do.
-    type Action: Clone;
+    type Action: Clone + Send;
     /// What names one of its connections.
-    type Connection: Clone;
+    type Connection: Clone + Send;
     /// What its modules can hit.
     type Touched: Display;
 
@@ -109,11 +107,7 @@ impl Family for LinkageProblem {
         linkage::solve(&self.start, &self.goal, options, on_event)
     }
 
-    fn replay(
-        &self,
-        plan: &Plan<linkage::Action, Held>,
-        required: f64,
-    ) -> Result<Replay<Held, Touched>, Refusal> {
+    fn replay(&self, plan: &Plan<linkage::Action, Held>, required: f64) -> Result<Replay<Held, Touched>, Refusal> {
         linkage::replay::replay(&self.start, &self.goal, plan, required)
     }
 

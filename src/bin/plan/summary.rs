@@ -128,11 +128,7 @@ fn proved<A, C>(text: &mut String, report: &Report<A, C>) {
     let _ = writeln!(text, "{statement}");
 }
 
-fn verified<F: Family>(
-    problem: &F,
-    report: &Answer<F>,
-    replay: &Replay<F::Connection, F::Touched>,
-) -> String {
+fn verified<F: Family>(problem: &F, report: &Answer<F>, replay: &Replay<F::Connection, F::Touched>) -> String {
     match replay.failures.first() {
         None => {
             let (states, margin) = (replay.oracle_solves, replay.margin.lower);

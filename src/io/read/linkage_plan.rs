@@ -42,8 +42,7 @@ impl Robot<'_> {
     fn pair(&self, texts: &[String; 2], place: &Place<'_>, findings: &mut Findings) -> Option<Connection> {
         let kind = |module: usize| self.linkage.modules.get(module).map(|module| module.module_type);
         let catalogue = &self.linkage.catalogue;
-        let [a, b] =
-            [0, 1].map(|i| port(&texts[i], &self.modules, catalogue, kind, &place.index(i), findings));
+        let [a, b] = [0, 1].map(|i| port(&texts[i], &self.modules, catalogue, kind, &place.index(i), findings));
         Some(Connection::new(a?, b?))
     }
 
@@ -105,19 +104,18 @@ impl Family for LinkagePlans<'_> {
             }
             wire::Action::Slide { .. } | wire::Action::Pivot { .. } => {
                 let hint = "here modules roll and rotate";
-                refuse(&place.key("kind"), "is a motion of robots all of whose modules sit in a lattice", hint, findings);
+                refuse(
+                    &place.key("kind"),
+                    "is a motion of robots all of whose modules sit in a lattice",
+                    hint,
+                    findings,
+                );
                 return None;
             }
         })
     }
 
-    fn connection(
-        &self,
-        which: Which,
-        held: Said<'_>,
-        place: &Place<'_>,
-        findings: &mut Findings,
-    ) -> Option<Held> {
+    fn connection(&self, which: Which, held: Said<'_>, place: &Place<'_>, findings: &mut Findings) -> Option<Held> {
         let robot = match which {
             Which::Start => &self.start,
             Which::Goal => &self.goal,

@@ -46,10 +46,7 @@ pub(super) fn sequence<F: Family>(
     })
 }
 
-fn bottleneck<F: Family>(
-    family: &F,
-    bottleneck: &Bottleneck<F::Connection>,
-) -> Result<wire::Bottleneck, Unwritable> {
+fn bottleneck<F: Family>(family: &F, bottleneck: &Bottleneck<F::Connection>) -> Result<wire::Bottleneck, Unwritable> {
     let held = bottleneck.connection.map(|held| family.held(Which::Start, held)).transpose()?;
     let (connection, joint) = held.unwrap_or_default();
     Ok(wire::Bottleneck {
