@@ -8,6 +8,7 @@ mod check;
 mod convert;
 mod exit;
 mod explain;
+mod family;
 mod files;
 mod gives_way;
 mod load_range;
