@@ -13,7 +13,6 @@ mod files;
 mod gives_way;
 mod load_range;
 mod motion_range;
-mod naming;
 mod order;
 mod output;
 mod polar_map;
