@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 
 use libtest_mimic::{Arguments, Failed, Trial};
 use steadfast::io::{
-    Diagnostics, SourceFile, no_references, read_catalogue, read_certificate, read_checkable, read_configuration, read_plan,
-    read_problem, read_structure,
+    Diagnostics, SourceFile, no_references, read_catalogue, read_certificate, read_checkable, read_configuration,
+    read_plan, read_problem, read_structure,
 };
 
 const KINDS: [&str; 8] =

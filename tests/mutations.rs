@@ -2,8 +2,9 @@
 //! is accepted must be written and read back equal.
 
 use steadfast::io::{
-    SourceFile, no_references, read_catalogue, read_certificate, read_configuration, read_linkage, read_plan, read_problem,
-    read_structure, write_catalogue, write_certificate, write_configuration, write_linkage, write_plan, write_structure,
+    SourceFile, no_references, read_catalogue, read_certificate, read_configuration, read_linkage, read_plan,
+    read_problem, read_structure, write_catalogue, write_certificate, write_configuration, write_linkage, write_plan,
+    write_structure,
 };
 
 /// Mutations of each kind of file.
