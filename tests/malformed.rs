@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 
 use libtest_mimic::{Arguments, Failed, Trial};
 use steadfast::io::{
-    Diagnostics, SourceFile, no_references, read_catalogue, read_certificate, read_configuration, read_plan,
-    read_problem, read_structure,
+    Diagnostics, SourceFile, no_references, read_catalogue, read_certificate, read_configuration, read_linkage,
+    read_plan, read_problem, read_structure,
 };
 
 const KINDS: [&str; 6] = ["structure", "catalogue", "configuration", "goal", "plan", "certificate"];
@@ -42,6 +42,16 @@ fn main() {
             ),
         )
     }));
+    for path in problems::texts_and_json_files("malformed/rofi").expect("the directory is there") {
+        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        trials.push(Trial::test(format!("rofi/{name}"), move || check("rofi", &path)));
+    }
+    trials
+        .push(Trial::test("ten megabytes of text", || bounded("rofi", format!("C\n{}", "M 0 0\n".repeat(1_500_000)))));
+    trials.push(Trial::test("a pad of a million docks, joined nowhere", || {
+        let world = r#"{"modules": [{"id": 1, "type": "pad", "width": 1000, "height": 1001}], "moduleJoints": []}"#;
+        bounded("rofi", world.to_string())
+    }));
     libtest_mimic::run(&Arguments::from_args(), trials).exit();
 }
 
@@ -50,6 +60,7 @@ fn read(kind: &str, file: &SourceFile) -> Result<(), Diagnostics> {
         "structure" => read_structure(file).map(drop),
         "catalogue" => read_catalogue(file).map(drop),
         "configuration" => read_configuration(file, &references).map(drop),
+        "rofi" => read_linkage(file, &no_references).map(drop),
         "plan" => read_plan(file).map(drop),
         "certificate" => read_certificate(file).map(drop),
         _ => {
