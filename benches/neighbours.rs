@@ -20,8 +20,8 @@ mod scenes;
 mod walks;
 
 use std::fmt::Write as _;
-use std::time::Instant;
 
+use cpu_time::ProcessTime;
 use steadfast::statics::{Assessment, Question, Rung, Tally, Verdict, assess, assess_keeping, assess_near};
 use walks::{Step, Walk};
 
@@ -128,10 +128,10 @@ fn check(name: &str, answer: &Assessment, truth: &Assessment) {
     assert_eq!(answer.verdict, truth.verdict, "{name}: {near:?} against {cold:?}");
 }
 
-/// Milliseconds of the fastest of some repetitions.
+/// Milliseconds of processor time of the fastest of some repetitions.
 fn fastest<T>(repetitions: usize, work: impl Fn() -> T) -> f64 {
     let once = |_| {
-        let started = Instant::now();
+        let started = ProcessTime::now();
         std::hint::black_box(work());
         started.elapsed().as_secs_f64() * 1e3
     };
@@ -140,7 +140,7 @@ fn fastest<T>(repetitions: usize, work: impl Fn() -> T) -> f64 {
 
 fn report(rows: &[Row], states: usize) -> String {
     let mut text = format!(
-        "# Neighbouring states\n\n{}; {states} states per walk; of {REPETITIONS} timings the fastest.\n\n",
+        "# Neighbouring states\n\n{}; {states} states per walk; of {REPETITIONS} processor times the fastest.\n\n",
         machine::describe()
     );
     text += "Mean milliseconds per state: `near` as a neighbour of the state before, solved where bounds did not decide; \

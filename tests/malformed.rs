@@ -6,11 +6,12 @@ use std::path::{Path, PathBuf};
 
 use libtest_mimic::{Arguments, Failed, Trial};
 use steadfast::io::{
-    Diagnostics, SourceFile, no_references, read_catalogue, read_certificate, read_configuration, read_linkage,
-    read_plan, read_problem, read_structure,
+    Diagnostics, SourceFile, no_references, read_catalogue, read_certificate, read_checkable, read_configuration,
+    read_linkage, read_plan, read_problem, read_structure,
 };
 
-const KINDS: [&str; 6] = ["structure", "catalogue", "configuration", "goal", "plan", "certificate"];
+const KINDS: [&str; 8] =
+    ["structure", "catalogue", "configuration", "lattice", "goal", "linkage_goal", "plan", "certificate"];
 
 fn main() {
     let mut trials = Vec::new();
@@ -52,6 +53,17 @@ fn main() {
         let world = r#"{"modules": [{"id": 1, "type": "pad", "width": 1000, "height": 1001}], "moduleJoints": []}"#;
         bounded("rofi", world.to_string())
     }));
+    trials.push(Trial::test("all modules in each other", || {
+        let module = |i| format!(r#"{{"id":"{i}","type":"node","position_m":[0,0,{}]}}"#, f64::from(i) * 1e-6);
+        let modules = (0..20_000).map(module).collect::<Vec<_>>().join(",");
+        bounded(
+            "configuration",
+            format!(
+                r#"{{"format":"configuration/1","catalogue":"freesn","gravity_m_s2":[0,0,0],"connections":"touching",
+                "require":{{"connected":false}},"modules":[{modules}]}}"#
+            ),
+        )
+    }));
     libtest_mimic::run(&Arguments::from_args(), trials).exit();
 }
 
@@ -59,12 +71,17 @@ fn read(kind: &str, file: &SourceFile) -> Result<(), Diagnostics> {
     match kind {
         "structure" => read_structure(file).map(drop),
         "catalogue" => read_catalogue(file).map(drop),
-        "configuration" => read_configuration(file, &references).map(drop),
+        "configuration" => read_checkable(file, &references).map(drop),
+        "lattice" => read_configuration(file, &references).map(drop),
         "rofi" => read_linkage(file, &no_references).map(drop),
         "plan" => read_plan(file).map(drop),
         "certificate" => read_certificate(file).map(drop),
         _ => {
-            let start = SourceFile::new("start.json", include_bytes!("../problems/malformed/start.json"));
+            let text = match kind {
+                "linkage_goal" => &include_bytes!("../problems/malformed/linkage_start.json")[..],
+                _ => &include_bytes!("../problems/malformed/start.json")[..],
+            };
+            let start = SourceFile::new("start.json", text);
             read_problem(&start, file, &no_references).map(drop)
         }
     }

@@ -3,11 +3,12 @@
 
 use steadfast::io::{
     Form, SourceFile, no_references, read_catalogue, read_certificate, read_configuration, read_linkage, read_plan,
-    read_problem, read_structure, write_certificate, write_configuration, write_plan, write_rofi, write_structure,
+    read_problem, read_structure, write_catalogue, write_certificate, write_configuration, write_linkage, write_plan,
+    write_rofi, write_structure,
 };
 use steadfast::robot::linkage::Linkage;
 
-/// Mutations of each of the six kinds of file.
+/// Mutations of each kind of file.
 const ROUNDS: u64 = 20_000;
 
 /// Marsaglia's xorshift: small, and the same everywhere.
@@ -121,7 +122,12 @@ fn structures() {
 
 #[test]
 fn catalogues() {
-    damage("catalogue.json", 0x9e37_79b9, |file| read_catalogue(file).map(drop).map_err(|e| e.to_string()));
+    damage("catalogue.json", 0x9e37_79b9, |file| {
+        let catalogue = read_catalogue(file).map_err(|e| e.to_string())?;
+        let text = write_catalogue(&catalogue).unwrap();
+        assert_eq!(read_catalogue(&SourceFile::new("again", text)), Ok(catalogue));
+        Ok(())
+    });
 }
 
 #[test]
@@ -131,6 +137,25 @@ fn configurations() {
         let text = write_configuration(&configuration).unwrap();
         assert_eq!(read_configuration(&SourceFile::new("again", text), &no_references), Ok(configuration));
         Ok(())
+    });
+}
+
+#[test]
+fn linkages() {
+    damage("linkage.json", 0x1b87_3593, |file| {
+        let linkage = read_linkage(file, &no_references).map_err(|e| e.to_string())?;
+        let text = write_linkage(&linkage).unwrap();
+        let again = read_linkage(&SourceFile::new("again", text), &no_references);
+        assert_eq!(again, Ok(linkage));
+        Ok(())
+    });
+}
+
+#[test]
+fn goals_of_linkages() {
+    let start = SourceFile::new("start.json", std::fs::read(problems::root().join("valid/linkage.json")).unwrap());
+    damage("linkage.json", 0xcc9e_2d51, |file| {
+        read_problem(&start, file, &no_references).map(drop).map_err(|e| e.to_string())
     });
 }
 

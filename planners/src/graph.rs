@@ -66,6 +66,10 @@ impl<'a, S: Space> Graph<'a, S> {
         graph
     }
 
+    pub fn space(&self) -> &'a S {
+        self.space
+    }
+
     pub fn state(&self, id: StateId) -> &S::State {
         self.registry.state(id)
     }
@@ -139,7 +143,8 @@ impl<'a, S: Space> Graph<'a, S> {
         self.heap_bytes + self.states() * (Registry::<S::State>::bytes_per_state() + columns)
     }
 
-    fn intern(&mut self, state: S::State) -> StateId {
+    /// The number of a state, new or not.
+    pub fn intern(&mut self, state: S::State) -> StateId {
         let (id, is_new) = self.registry.insert(state);
         if is_new {
             let state = self.registry.state(id);
@@ -164,7 +169,7 @@ fn upper_or_unknown(width: f64) -> f64 {
 /// Rounding may cross the ends or lift them over an earlier bound. The smaller
 /// end then counts as the lower one: a search may lose a path to rounding, but
 /// must never promise a width that was not proved.
-fn trusted(width: Width, bound: f64) -> Width {
+pub(crate) fn trusted(width: Width, bound: f64) -> Width {
     let lower = if width.lower.is_nan() { f64::NEG_INFINITY } else { width.lower };
     let upper = upper_or_unknown(width.upper);
     Width { lower: lower.min(upper).min(bound), upper: upper.max(lower).min(bound) }

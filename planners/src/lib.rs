@@ -11,6 +11,7 @@
 //! | --- | --- | --- |
 //! | [`Search::widest`] | largest width | lazy best-first with the max-min algebra |
 //! | [`Search::shortest`] | least cost with width at least a floor | lazy A*, re-opening |
+//! | [`Search::from_both_ends`] | the same, where goals are known | lazy bidirectional Dijkstra |
 //! | [`Search::margin`] | largest width, then least cost | both, one after the other |
 //! | [`Search::k_best`] | the K cheapest with width at least a floor | Yen with Lawler's cells |
 //!
@@ -38,6 +39,7 @@
 pub mod algebra;
 pub mod toy;
 
+mod both_ends;
 mod brackets;
 mod budget;
 mod graph;
@@ -57,4 +59,4 @@ pub use budget::{Budget, Limit, Statistics};
 pub use outcome::{Outcome, Path, Proof, Step};
 pub use progress::{Pass, Progress};
 pub use search::{Options, PathOf, Search};
-pub use space::{Space, Transition, Width};
+pub use space::{Reversible, Space, Transition, Width};

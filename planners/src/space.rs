@@ -96,3 +96,14 @@ pub trait Space: Sync {
         0
     }
 }
+
+/// A space that can be searched from its goals as well: they are known, and so are the transitions into a state.
+pub trait Reversible: Space {
+    /// Every goal that may be reached, in a fixed order, each once.
+    fn goals(&self) -> Vec<Self::State>;
+
+    /// Transitions into a state, in a fixed order: those that [`Space::transitions`] gives for the state that each
+    /// of them names in `to`, which here is where it comes **from**. The action is what leads from there to
+    /// `state`, and is certified as such; it may be another value for the same transition than `transitions` gives.
+    fn transitions_into(&self, state: &Self::State) -> Vec<Transition<Self::State, Self::Action>>;
+}

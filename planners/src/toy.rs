@@ -1,6 +1,6 @@
 //! Explicit graphs as spaces, for tests, examples and comparisons.
 
-use crate::space::{Space, Transition, Width};
+use crate::space::{Reversible, Space, Transition, Width};
 
 /// A transition of a [`Toy`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -93,5 +93,24 @@ impl<A: Clone + PartialEq + Send + Sync> Space for Toy<A> {
 
     fn width_at_most(&self) -> f64 {
         self.width_at_most
+    }
+}
+
+impl<A: Clone + PartialEq + Send + Sync> Reversible for Toy<A> {
+    fn goals(&self) -> Vec<usize> {
+        (0..self.is_goal.len()).filter(|&node| self.is_goal[node]).collect()
+    }
+
+    fn transitions_into(&self, &state: &usize) -> Vec<Transition<usize, A>> {
+        let into = |from: usize| {
+            let arcs = self.arcs[from].iter().filter(move |arc| arc.to == state);
+            arcs.map(move |arc| Transition {
+                action: arc.action.clone(),
+                to: from,
+                cost: arc.cost,
+                width_at_most: arc.width_at_most,
+            })
+        };
+        (0..self.arcs.len()).flat_map(into).collect()
     }
 }

@@ -33,6 +33,7 @@ mod solve;
 mod step;
 mod surface;
 mod trace;
+mod worst;
 
 pub use action::Action;
 pub use engines::MARGIN_TOLERANCE;

@@ -6,8 +6,6 @@
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use rayon::prelude::*;
-
 use crate::robot::{Cell, Configuration, Face, Occupancy, Placement};
 use crate::statics::{Bracket, InvalidStructure, Question, assess};
 
@@ -16,15 +14,9 @@ use super::course::{Course, engagement};
 use super::layout::Bond;
 use super::moves::Move;
 use super::sampling;
+use super::worst;
 
-/// When a margin is attained.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Instant {
-    /// At this phase of a move, from 0 to 1.
-    Phase(f64),
-    /// In a state at rest.
-    Rest,
-}
+pub use super::worst::Instant;
 
 /// Two modules that hold each other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,15 +28,7 @@ pub struct Seam {
 }
 
 /// The worst of some states.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Worst {
-    /// Smallest margin.
-    pub margin: Bracket,
-    /// When.
-    pub instant: Instant,
-    /// The connection that is weakest then, if any holds at all.
-    pub weakest: Option<Seam>,
-}
+pub type Worst = worst::Worst<Seam>;
 
 /// The oracle for the states of one robot.
 pub struct Oracle<'a> {
@@ -90,10 +74,8 @@ impl<'a> Oracle<'a> {
     /// minus infinity. The result does not depend on the number of threads.
     pub fn of_move(&self, before: Vec<Placement>, bonds: &[Bond], step: Move, floor: f64) -> Worst {
         let course = Course::new(before, bonds, step, self.pitch).expect("a legal move has a module and a support");
-        match self.of_course(&course, step, floor) {
-            Err(out) => out.cut_short(),
-            Ok(worst) => worst,
-        }
+        let ask = |phase: f64| self.ask(&course.at(phase), Instant::Phase(phase));
+        worst::of_course(sampling::of(step), &ask, floor, &self.solves).unwrap_or_else(Worst::cut_short)
     }
 
     /// Upper bound on the margin of a move: with all modules but the moving one held
@@ -117,48 +99,6 @@ impl<'a> Oracle<'a> {
         margins.fold(f64::INFINITY, f64::min)
     }
 
-    /// The worst sample, refined; `Err` with the first that is out.
-    fn of_course(&self, course: &Course, step: Move, floor: f64) -> Result<Worst, Worst> {
-        let initial: Vec<f64> = initial_phases(step).collect();
-        let mut samples = self.sample(course, &initial, floor)?;
-        loop {
-            samples.sort_by(|(a, _), (b, _)| a.total_cmp(b));
-            let worst = (0..samples.len())
-                .min_by(|&a, &b| samples[a].1.margin.lower.total_cmp(&samples[b].1.margin.lower))
-                .expect("a move has samples");
-            let around = [worst.checked_sub(1).map(|before| [before, worst]), Some([worst, worst + 1])];
-            let gaps = around.into_iter().flatten().filter(|&[_, high]| high < samples.len());
-            let wide = gaps.map(|[a, b]| [samples[a].0, samples[b].0]);
-            let wide = wide.filter(|[low, high]| high - low >= sampling::resolution(step));
-            let middles: Vec<f64> = wide.map(|[low, high]| f64::midpoint(low, high)).collect();
-            if middles.is_empty() {
-                let margin = samples.iter().map(|(_, w)| w.margin).reduce(Bracket::min);
-                return Ok(Worst { margin: margin.expect("a move has samples"), ..samples[worst].1 });
-            }
-            samples.extend(self.sample(course, &middles, floor)?);
-        }
-    }
-
-    /// Margins at these phases, in this order; `Err` with the first that is out.
-    fn sample(&self, course: &Course, phases: &[f64], floor: f64) -> Result<Vec<(f64, Worst)>, Worst> {
-        let mut samples = Vec::with_capacity(phases.len());
-        for together in phases.chunks(rayon::current_num_threads().max(1)) {
-            let ask = |&phase: &f64| self.ask(&course.at(phase), Instant::Phase(phase));
-            let worsts: Vec<Worst> = match together {
-                [phase] => vec![ask(phase)],
-                _ => together.par_iter().map(ask).collect(),
-            };
-            for (&phase, worst) in together.iter().zip(worsts) {
-                self.solves.fetch_add(1, Ordering::Relaxed);
-                if worst.is_out(floor) {
-                    return Err(worst);
-                }
-                samples.push((phase, worst));
-            }
-        }
-        Ok(samples)
-    }
-
     fn ask(&self, state: &Transient, instant: Instant) -> Worst {
         self.read(&self.assembler.assemble(state), state, instant)
     }
@@ -176,34 +116,6 @@ impl<'a> Oracle<'a> {
                 Worst { margin: Bracket::new(f64::NEG_INFINITY, f64::INFINITY), instant, weakest: None }
             }
         }
-    }
-}
-
-/// The phases sampled before refinement: the middle and the ends first, which are out most often.
-fn initial_phases(step: Move) -> impl Iterator<Item = f64> {
-    let steps = sampling::steps(step);
-    let first = [steps / 2, steps, 0];
-    let others = (1..steps).filter(move |i| !first.contains(i));
-    first.into_iter().chain(others).map(move |i| f64::from(i) / f64::from(steps))
-}
-
-impl Worst {
-    /// The worse of two; of equals the first.
-    #[must_use]
-    pub fn or_worse(self, other: Self) -> Self {
-        let margin = self.margin.min(other.margin);
-        if other.margin.lower < self.margin.lower { Self { margin, ..other } } else { Self { margin, ..self } }
-    }
-
-    /// What is known when other states were not asked about.
-    #[must_use]
-    pub fn cut_short(self) -> Self {
-        Self { margin: Bracket::new(f64::NEG_INFINITY, self.margin.upper), ..self }
-    }
-
-    /// Whether no more need be known of what this is a part of.
-    pub fn is_out(&self, floor: f64) -> bool {
-        self.margin.upper < floor || self.margin.upper == f64::NEG_INFINITY
     }
 }
 

@@ -1,6 +1,7 @@
 //! At which phases of a move the oracle is asked. The only place for these numbers.
 
 use super::moves::{Motion, Move, Turn};
+use super::worst::Sampling;
 
 /// Steps of a slide before refinement: every eighth of a cell.
 const SLIDE_STEPS: u32 = 8;
@@ -14,8 +15,13 @@ const SLIDE_RESOLUTION: f64 = 1.0 / 64.0;
 /// Around the worst sample, a pivot is refined until samples are closer than this, in degrees.
 const PIVOT_RESOLUTION_DEGREES: f64 = 1.5;
 
+/// At which phases a move is sampled.
+pub fn of(step: Move) -> Sampling {
+    Sampling { steps: steps(step), resolution: resolution(step) }
+}
+
 /// How many equal steps a move is sampled in before refinement.
-pub fn steps(step: Move) -> u32 {
+fn steps(step: Move) -> u32 {
     match step.motion {
         Motion::Slide { .. } => SLIDE_STEPS,
         Motion::Pivot { turn: Turn::Quarter, .. } => QUARTER_STEPS,
@@ -34,7 +40,7 @@ pub fn coarse(step: Move) -> impl Iterator<Item = f64> {
 }
 
 /// The distance in phase below which samples are not refined further.
-pub fn resolution(step: Move) -> f64 {
+fn resolution(step: Move) -> f64 {
     match step.motion {
         Motion::Slide { .. } => SLIDE_RESOLUTION,
         Motion::Pivot { turn, .. } => PIVOT_RESOLUTION_DEGREES / turn.degrees(),

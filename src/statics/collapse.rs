@@ -163,7 +163,7 @@ fn resisted(connector: &Connector, relative: &Twist) -> f64 {
 }
 
 /// Lifts every limit of a model that strength lifts.
-pub(super) fn unbound(model: &mut Model) {
+fn unbound(model: &mut Model) {
     if let Model::Box { shear, tension, compression, bending, torsion } = model {
         for limit in shear.iter_mut().chain([tension, compression]).chain(bending).chain([torsion]) {
             if *limit > 0.0 {

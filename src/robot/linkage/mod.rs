@@ -9,6 +9,7 @@ mod engagement;
 mod kinematics;
 mod problems;
 mod spot;
+mod symmetry;
 #[cfg(test)]
 mod tests;
 
@@ -27,6 +28,7 @@ pub use code::Code;
 pub use engagement::{Engagement, MEETING, frame_between, orientations_between};
 pub use kinematics::{child_pose, mated};
 pub use spot::{MICRO, Spot};
+pub use symmetry::Symmetry;
 
 /// A module of a linkage.
 #[derive(Clone, Debug, PartialEq)]

@@ -211,7 +211,9 @@ fn end(line: &Line<'_>, start: &Start, sign: f64, limit: f64) -> RangeEnd {
         return RangeEnd { force: Bracket::exact(sign * f64::INFINITY), beyond: None, size: reach.size(start) };
     }
     polish::polish(line, start, sign, limit, &mut reach);
-    let (inner, outer) = (start.force + sign * reach.inner, start.force + sign * reach.outer);
+    // Each is proved up to the tolerance on data; where they cross by that, the truth lies between them.
+    let [near, far] = [reach.inner.min(reach.outer), reach.inner.max(reach.outer)];
+    let (inner, outer) = (start.force + sign * near, start.force + sign * far);
     let force = if sign > 0.0 { Bracket::new(inner, outer) } else { Bracket::new(outer, inner) };
     let beyond = beyond(line, start, sign, &reach, limit).map(Box::new);
     RangeEnd { force, beyond, size: reach.size(start) }

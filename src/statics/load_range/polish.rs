@@ -17,8 +17,9 @@ const ROUNDS: usize = 24;
 /// Steps to either side of a guess, as shares of the end's size: the first that is proved ends it.
 const STEPS: [f64; 6] = [1e-8, 3e-8, 4e-7, 1e-5, 1e-3, 3e-2];
 
-/// By how much a force grows while no end is in sight.
+/// By how much a force grows while no end is in sight, and how many times the typical one it becomes.
 const GROWTH: f64 = 1e2;
+const LARGEST: f64 = 1e12;
 
 /// Narrows `reach` from `start` in the direction of `sign` until it is narrow, or no more is gained.
 pub(super) fn polish(line: &Line<'_>, start: &Start, sign: f64, limit: f64, reach: &mut Reach) {
@@ -41,6 +42,7 @@ pub(super) fn polish(line: &Line<'_>, start: &Start, sign: f64, limit: f64, reac
             }
             Some(_) => return,
             None if reach.outer.is_finite() => reach.outer + size * STEPS[0],
+            None if far > LARGEST * reach.typical => return,
             None => {
                 far *= GROWTH;
                 reach.inner + far

@@ -26,7 +26,7 @@ const HOPELESS: [f64; ROUNDS] = [f64::INFINITY, 2.5, 1.2, 0.0];
 
 /// Share of the way to the middles of the cones in the first round, which starts
 /// from a field that was good where it comes from, and in later ones.
-const CENTRING: [f64; 2] = [0.3, 0.7];
+const CENTRING: [f64; 2] = [0.5, 0.9];
 
 /// Strengths, relative to the rated ones, at which a block is asked for.
 fn level(question: Question) -> Option<f64> {

@@ -7,20 +7,31 @@ use super::super::attempts::ATTEMPTS;
 use super::super::balance::{restore, wrenches};
 use super::super::blocks::{Block, Link};
 use super::super::bracket::Problem;
-use super::super::conic;
+use super::super::conic::{self, Attempt};
 use super::super::loads::BodyLoad;
 use super::super::program::Program;
+use super::super::reductions::Reductions;
+use super::super::solve_block::converged;
 use super::super::structure::Structure;
 
-/// Relative width of a level's bracket that is enough.
+/// Width of a level's bracket, as a share of the level before, that is enough.
 const ENOUGH: f64 = 1e-6;
 
-/// Width, as a share of the level before, beyond which a level counts as not proved.
+/// Width beyond which a level counts as not proved.
 const PROVED: f64 = 1e-2;
 
-/// Relative room above a level for those that are held there, so that a field with all of them at
-/// their levels is not on the edge.
-const ROOM: f64 = 1e-7;
+/// Relative room above a level for those that are held there: without it no state lies inside all
+/// their cones.
+const ROOM: f64 = 1e-6;
+
+/// Insets with which the block's own method is asked, see [`Attempt`].
+const INSETS: [f64; 2] = [1e-8, 1e-6];
+
+/// How a motion is asked for that opens every contact and connection clearly.
+const SAFE: Attempt = Attempt { tolerance: 1e-9, inset: 1e-2, regularization: 1e-8 };
+
+/// Shares of it that are mixed into a tight motion which does not quite, tried in turn.
+const MIXES: [f64; 6] = [0.0, 1e-9, 1e-8, 1e-7, 1e-6, 1e-4];
 
 /// What the links of a block are held at.
 pub(super) struct Held {
@@ -56,9 +67,18 @@ pub(super) fn next(
     let problem = Problem { structure, block, loads, program: &program };
     let mut found = Bracket::new(0.0, f64::INFINITY);
     let mut shares = vec![0.0; block.links.len()];
-    for attempt in &ATTEMPTS {
-        let Some(iterate) = conic::solve(&program, attempt) else { continue };
-        if let Some((lower, by_link)) = at_least(&problem, &program.twists(&iterate.v), held)
+    // Ties of held boxes have right-hand sides, which the block's own method does not know.
+    let own = INSETS.iter().filter(|_| program.groups.iter().all(|group| group.tie_row.is_none()));
+    let own = own.map(|inset| converged(&program, *inset, Reductions::ALL).map(|(iterate, _)| iterate));
+    let safe = std::cell::LazyCell::new(|| conic::solve(&program, &SAFE).map(|iterate| program.twists(&iterate.v)));
+    for iterate in own.chain(ATTEMPTS.iter().map(|attempt| conic::solve(&program, attempt))).flatten() {
+        let twists = program.twists(&iterate.v);
+        let best = MIXES.iter().filter_map(|share| match (*share > 0.0, safe.as_deref()) {
+            (false, _) => at_least(&problem, &twists, held),
+            (true, Some(safe)) => at_least(&problem, &mixed(&twists, safe, *share), held),
+            (true, None) => None,
+        });
+        if let Some((lower, by_link)) = best.max_by(|a, b| a.0.total_cmp(&b.0))
             && lower > found.lower
         {
             (found.lower, shares) = (lower, by_link);
@@ -77,6 +97,12 @@ pub(super) fn next(
         found = Bracket::new(found.upper, found.lower);
     }
     (found.width() <= PROVED * held.last).then_some((found, shares))
+}
+
+/// A motion with a share of another.
+fn mixed(twists: &[Twist], other: &[Twist], share: f64) -> Vec<Twist> {
+    let mix = |(a, b): (&Twist, &Twist)| Twist::new(a.linear + b.linear * share, a.angular + b.angular * share);
+    twists.iter().zip(other).map(mix).collect()
 }
 
 /// The largest demand of a connection that is not held, where all others hold.

@@ -14,11 +14,16 @@ use super::SelfStress;
 /// Most programs that are solved for a block.
 const ROUNDS: usize = 60;
 
-/// Largest change of a gap, relative to gaps and elastic approaches, at which they stay.
-const STAYS: f64 = 1e-4;
+/// Largest change of a gap, as a share of the contact's own approach, at which it stays; and as a
+/// share of the largest elastic motion in the block, which the solver's accuracy allows.
+const STAYS: f64 = 1e-3;
+const ROUNDED: f64 = 1e-6;
 
-/// How many times the elastic energy the work of pressures over the gaps may be.
-pub(super) const FAR: f64 = 100.0;
+/// Share of the largest force from which on a contact presses.
+const PRESSES: f64 = 1e-6;
+
+/// How many times the largest elastic motion of a block a contact that presses may slide, times its friction.
+const FAR: f64 = 100.0;
 
 /// Steadiness of gaps' growth (the share of the last growth that is repeated) from which on the
 /// next step is longer, and by how much.
@@ -36,12 +41,13 @@ pub(super) fn settle(structure: &Structure, block: &Block, loads: &[BodyLoad]) -
     let (mut before, mut stride): (Option<Vec<f64>>, f64) = (None, 1.0);
     for _ in 0..ROUNDS {
         let Some(settled) = springs.settle(&gaps) else { return SelfStress::Undecided };
-        let size = gaps.iter().copied().fold(settled.approach, f64::max);
         let growth: Vec<f64> = settled.slips.iter().zip(&gaps).map(|(slip, gap)| slip - gap).collect();
-        if growth.iter().all(|growth| growth.abs() <= STAYS * size) {
+        let stays = |(growth, pressure): (&f64, &f64)| growth.abs() <= STAYS * pressure + ROUNDED * settled.largest;
+        if growth.iter().zip(&settled.pressures).all(stays) {
             return SelfStress::NotNeeded;
         }
-        if settled.work > FAR * settled.energy {
+        let far = |(gap, pressure): (&f64, &f64)| *pressure > PRESSES * settled.largest && *gap > FAR * settled.largest;
+        if gaps.iter().zip(&settled.pressures).any(far) {
             return SelfStress::ReliedOn;
         }
         let steady = before.as_ref().is_some_and(|before| {
@@ -74,18 +80,21 @@ struct Springs<'p> {
     cones: Vec<SupportedConeT<f64>>,
     /// Row at which each group's cone begins.
     row: Vec<usize>,
+    /// Force in N, or torque over a lever, of each variable.
+    force: Vec<f64>,
+    /// The largest force scale, by which compliances are measured.
+    unit: f64,
 }
 
-/// A state of least energy, with given gaps.
+/// A state of least energy, with given gaps. Motions are measured by the force that they
+/// would cause in a contact, in N.
 struct Settled {
-    /// Slip of every contact times its friction, as a gap.
+    /// Slip of every contact times its friction, by group of the program.
     slips: Vec<f64>,
-    /// Largest elastic approach of a contact, as a gap.
-    approach: f64,
-    /// Twice the elastic energy.
-    energy: f64,
-    /// Work of all pressures over the gaps.
-    work: f64,
+    /// Pressure of every contact, which is its approach.
+    pressures: Vec<f64>,
+    /// The largest elastic motion of all links.
+    largest: f64,
 }
 
 impl<'p> Springs<'p> {
@@ -93,12 +102,13 @@ impl<'p> Springs<'p> {
         let unit = program.scales.link.iter().copied().fold(0.0, f64::max);
         let rest: Vec<f64> = program.groups.iter().map(|group| group.rest / program.t_scale).collect();
         let mut columns: Vec<Vec<(usize, f64)>> = Vec::with_capacity(program.variables);
-        let mut compliance = Vec::with_capacity(program.variables);
+        let mut forces = Vec::with_capacity(program.variables);
         for group in &program.groups {
             columns.extend((0..group.len).map(|k| program.entries(group, k)));
             let lever = program.lever_of(group.link);
-            compliance.extend((0..group.len).map(|k| (force(group, k, lever) / unit).powi(2)));
+            forces.extend((0..group.len).map(|k| force(group, k, lever)));
         }
+        let compliance = forces.iter().map(|force| (force / unit).powi(2)).collect();
         let mut rhs: Vec<f64> = program.load.iter().map(|load| -load).collect();
         let mut cones = vec![SupportedConeT::ZeroConeT(rhs.len())];
         let mut row = vec![0; program.groups.len()];
@@ -118,7 +128,7 @@ impl<'p> Springs<'p> {
         let contact = program.groups.iter().map(|group| matches!(block.links[group.link], Link::Contact(_)));
         let contact = contact.collect();
         let matrix = compressed(rhs.len(), columns);
-        Self { program, compliance, rest, contact, matrix, rhs, cones, row }
+        Self { program, compliance, rest, contact, matrix, rhs, cones, row, force: forces, unit }
     }
 
     /// The state of least energy with a gap at each contact that it takes nothing to open and
@@ -126,7 +136,7 @@ impl<'p> Springs<'p> {
     fn settle(&self, gaps: &[f64]) -> Option<Settled> {
         let mut linear = vec![0.0; self.program.variables];
         for (group, gap) in self.program.groups.iter().zip(gaps) {
-            linear[group.first] = *gap;
+            linear[group.first] = gap / self.motion(group);
         }
         let diagonal = (0..self.compliance.len()).collect::<Vec<usize>>();
         let starts = (0..=self.compliance.len()).collect();
@@ -149,17 +159,25 @@ impl<'p> Springs<'p> {
             | SolverStatus::CallbackTerminated => return None,
         }
         let (y, multipliers) = (&solver.solution.x, &solver.solution.z);
-        let mut settled = Settled { slips: vec![0.0; gaps.len()], approach: 0.0, energy: 0.0, work: 0.0 };
-        settled.energy = y.iter().zip(&self.compliance).map(|(y, c)| c * y * y).sum();
+        let strains = y.iter().zip(&self.force).map(|(y, force)| (y * force).abs());
+        let mut settled = Settled {
+            slips: vec![0.0; gaps.len()],
+            pressures: vec![0.0; gaps.len()],
+            largest: strains.fold(0.0, f64::max),
+        };
         for (index, group) in self.program.groups.iter().enumerate().filter(|(index, _)| self.contact[*index]) {
-            let pressure = (y[group.first] + self.rest[index]).max(0.0);
-            settled.approach = settled.approach.max(pressure * self.compliance[group.first]);
-            settled.work += gaps[index] * pressure;
+            settled.pressures[index] = ((y[group.first] + self.rest[index]) * group.scale).max(0.0);
             // The cone's multiplier is the plastic motion; across the normal it is mu times slip.
             let plastic = &multipliers[self.row[index]..self.row[index] + group.len];
-            settled.slips[index] = plastic[1..].iter().map(|x| x * x).sum::<f64>().sqrt();
+            let slip = plastic[1..].iter().map(|x| x * x).sum::<f64>().sqrt();
+            settled.slips[index] = slip * self.motion(group);
         }
         Some(settled)
+    }
+
+    /// The motion that a multiplier of a contact's first variable of 1 stands for, as a force.
+    fn motion(&self, group: &Group) -> f64 {
+        self.unit * self.unit / group.scale
     }
 }
 

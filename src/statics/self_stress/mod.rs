@@ -1,14 +1,14 @@
 //! Whether a structure stands only by squeeze between contacts that nothing produces.
 //!
 //! Equilibrium of forces lets rigid contacts clamp: a block between two walls "stands" when the
-//! walls press on it hard enough for friction to carry it, although nothing makes them press.
-//! Such a field exists because the structure has a *self-stress*: contact forces (with whatever
-//! connections pass on) that balance without any load. Three questions are asked, cheapest first:
+//! walls press on it hard enough for friction to carry it, although nothing makes them press. The
+//! walls need not be immovable: heavy pillars can be "pressed apart" by as much as friction holds
+//! their feet. Two questions are asked, the cheap one first:
 //!
-//! 1. *Is there a self-stress at all* that presses on a contact? None where the bodies that
-//!    connections join can move so that every contact opens faster than friction widens its cone
-//!    (Gordan's alternative). One such motion is tried, everything lifted and spread a little: that
-//!    settles robots on the ground and stacks. Otherwise a cone program decides (`clamp`).
+//! 1. *Can anything but the loads press?* If lifting every body by its height, with all that is connected to it,
+//!    opens every contact faster than friction widens its cone, no: in any balance the pressures, each times the
+//!    speed of that opening, add up to at most what the loads do in that motion (`lift`). That settles
+//!    robots on the ground and stacks, and costs nothing.
 //! 2. *Do finite stiffnesses produce what is needed?* From a state without any stress, every
 //!    contact and connection is as stiff as every other, presses only by as much as its bodies
 //!    approach, carries shear by as much as they slide against each other, up to friction, and a
@@ -26,15 +26,15 @@
 //! until gaps stay (De Saxce and Feng 1998; the iteration is that of Cadoux 2009 and of
 //! Acary, Cadoux, Lemarechal and Malick 2011). Where a wedge of taper `theta` holds, gaps converge like powers of
 //! `mu / (mu + tan theta)`; where nothing produces the squeeze they grow for ever. Sliding by more than a hundred
-//! times what the elastic energy accounts for counts as that: a wedge of a third of a degree.
+//! times the largest elastic motion counts as that: a wedge of a third of a degree.
 //!
 //! This is a statement on equilibrium of forces, not a proof of instability: walls that are really
 //! pressed together do hold a block. Nor does "not relied on" prove that the real contacts, of
 //! unlike stiffness and history, find such a state. All loads are applied at once, and slip is
 //! measured from the start to the end of that.
 
-mod clamp;
 mod elastic;
+mod lift;
 
 use super::blocks::{Block, Link, cut};
 use super::loads::{BodyLoad, lump, own_loads};
@@ -42,12 +42,12 @@ use super::rigid_links::Merged;
 use super::structure::Structure;
 use super::validate::{InvalidStructure, validate};
 
-/// Whether a structure that stands relies on self-stress that presses on contacts.
+/// Whether a structure that stands relies on contacts that press on each other though nothing makes them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum SelfStress {
-    /// There is none, or no load that could need it.
+    /// Nothing but the loads could press on any contact.
     Impossible,
-    /// There may be, but contact forces that finite stiffnesses produce hold the structure.
+    /// Contacts might press on each other otherwise, but those forces that finite stiffnesses produce hold the structure.
     NotNeeded,
     /// The structure stands, if at all, by squeeze that nothing produces.
     ReliedOn,
@@ -99,11 +99,8 @@ pub fn contact_self_stress(structure: &Structure) -> Result<SelfStress, Vec<Inva
 fn of_block(structure: &Structure, block: &Block, loads: &[BodyLoad]) -> SelfStress {
     let touches = block.links.iter().any(|link| matches!(link, Link::Contact(_)));
     let loaded = block.bodies.iter().any(|&body| !loads[body].is_zero());
-    if block.links.len() < 2 || !touches || !loaded || clamp::opens(structure, block) {
+    if block.links.len() < 2 || !touches || !loaded || lift::opens(structure, block) {
         return SelfStress::Impossible;
     }
-    match clamp::is_possible(structure, block, loads) {
-        Some(false) => SelfStress::Impossible,
-        Some(true) | None => elastic::settle(structure, block, loads),
-    }
+    elastic::settle(structure, block, loads)
 }

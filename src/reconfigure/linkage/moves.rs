@@ -1,0 +1,240 @@
+//! The moves of a linkage: every roll and every rotation by one step, with every way to split the robot for it.
+//!
+//! Knows what holds together and where it turns; knows neither collision nor forces.
+
+use std::sync::Arc;
+
+use nalgebra::Unit;
+
+use crate::geometry::Motion;
+use crate::robot::linkage::{Connection, MICRO, Port, Spot, mated};
+use crate::robot::{JointType, ModuleType, PortPlace};
+use crate::spatial::{Point, Pose, Rotation, Vec3};
+
+use super::action::{Action, Half};
+use super::places::Place;
+use super::problem::Class;
+use super::sides::Graph;
+
+/// A robot in some description: modules, and the connections between them that are engaged.
+#[derive(Clone, Debug)]
+pub struct View<'a> {
+    /// The classes of the modules.
+    pub classes: &'a [Class],
+    /// The modules.
+    pub modules: Vec<Arc<Place>>,
+    /// The engaged connections, sorted; modules are indices into `modules`.
+    pub connections: Vec<Connection>,
+}
+
+/// A move of a robot in some description.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Step {
+    /// What turns, by how much, and which side of it moves.
+    pub action: Action,
+    /// Whether each module moves as a whole. A module whose joint turns does not.
+    pub carried: Vec<bool>,
+    /// How they move.
+    pub motion: Motion,
+}
+
+/// What may move.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Rules {
+    /// Whether the robot must hold together on both sides of what turns.
+    pub connected: bool,
+    /// Whether it is the same which side moves; then the one without the first module's first body does.
+    pub either_side: bool,
+}
+
+impl View<'_> {
+    /// The type of a module.
+    pub fn kind(&self, module: usize) -> &ModuleType {
+        &self.classes[self.modules[module].class].kind
+    }
+
+    /// The body that a port sits on.
+    pub fn body_of(&self, port: Port) -> usize {
+        self.kind(port.module).ports[port.port].body
+    }
+
+    /// All moves by these rules, in a fixed order.
+    pub fn steps(&self, rules: Rules) -> Vec<Step> {
+        let mut steps = Vec::new();
+        for &connection in &self.connections {
+            self.rolls(connection, rules, &mut steps);
+        }
+        for module in 0..self.modules.len() {
+            if self.kind(module).rotates {
+                for joint in 0..self.kind(module).joints.len() {
+                    self.rotations(module, joint, rules, &mut steps);
+                }
+            }
+        }
+        steps
+    }
+
+    /// Whether a body moves.
+    pub fn moves(&self, step: &Step, module: usize, body: usize) -> bool {
+        match step.action {
+            Action::Rotate { module: turning, joint, carried, .. } if turning == module => {
+                self.classes[self.modules[module].class].is_beyond(joint, body) == (carried == Half::Child)
+            }
+            _ => step.carried[module],
+        }
+    }
+
+    /// The connections that stay engaged through a move.
+    pub fn kept(&self, step: &Step) -> Vec<Connection> {
+        let moves = |port: Port| self.moves(step, port.module, self.body_of(port));
+        let rolls =
+            |connection: &Connection| matches!(step.action, Action::Roll { connection: c, .. } if c == *connection);
+        let is_kept = |connection: &&Connection| {
+            let [a, b] = connection.ports;
+            moves(a) == moves(b) || rolls(connection)
+        };
+        self.connections.iter().filter(is_kept).copied().collect()
+    }
+
+    /// The modules after a move: class, pose and joint positions of each.
+    pub fn after(&self, step: &Step) -> Vec<(usize, Pose, Arc<[i32]>)> {
+        let displacement = step.motion.at(1.0);
+        let module = |(index, place): (usize, &Arc<Place>)| {
+            let pose = if self.moves(step, index, 0) { displacement * place.pose } else { place.pose };
+            let joints = match step.action {
+                Action::Rotate { module, joint, to, .. } if module == index => {
+                    let mut joints = place.joints.to_vec();
+                    joints[joint] = to;
+                    joints.into()
+                }
+                _ => Arc::clone(&place.joints),
+            };
+            (place.class, pose, joints)
+        };
+        self.modules.iter().enumerate().map(module).collect()
+    }
+
+    fn rotations(&self, module: usize, joint: usize, rules: Rules, steps: &mut Vec<Step>) {
+        let class = &self.classes[self.modules[module].class];
+        let kind = &class.kind.joints[joint];
+        // The child half of the turning module is one more vertex.
+        let count = self.modules.len();
+        let vertex = |port: Port| {
+            let is_child = port.module == module && class.is_beyond(joint, self.body_of(port));
+            if is_child { count } else { port.module }
+        };
+        let graph = Graph::new(count + 1, self.connections.iter().map(|connection| connection.ports.map(vertex)));
+        let parent = self.modules[module].bodies[kind.parent];
+        for to in targets(kind, self.modules[module].joints[joint]) {
+            for carried in [Half::Child, Half::Parent] {
+                let (inside, outside) = if carried == Half::Child { (count, module) } else { (module, count) };
+                let motion = Motion::Rotation {
+                    centre: (parent * Point::from(kind.origin)).coords,
+                    axis: parent.rotation * kind.axis,
+                    angle: (f64::from(to.1) * kind.step_degrees).to_radians()
+                        * if inside == count { 1.0 } else { -1.0 },
+                };
+                for mut side in graph.sides(inside, outside, rules.connected) {
+                    side.truncate(count);
+                    side[module] = false;
+                    let action = Action::Rotate { module, joint, to: to.0, carried };
+                    self.add(Step { action, carried: side, motion: motion.clone() }, rules, steps);
+                }
+            }
+        }
+    }
+
+    fn rolls(&self, connection: Connection, rules: Rules, steps: &mut Vec<Step>) {
+        let [a, b] = connection.ports;
+        let place = |port: Port| &self.kind(port.module).ports[port.port].place;
+        let (point, ball, frame) = match (place(a), place(b)) {
+            (PortPlace::Point { frame, .. }, PortPlace::Surface) => (a, b, frame),
+            (PortPlace::Surface, PortPlace::Point { frame, .. }) => (b, a, frame),
+            _ => return,
+        };
+        let Some(step) = self.kind(point.module).roll_step_degrees else { return };
+        let body = self.body_of(ball);
+        let ball_pose = self.modules[ball.module].bodies[body];
+        let centre = ball_pose * self.kind(ball.module).bodies[body].shape_pose;
+        let port_pose = self.modules[point.module].bodies[self.body_of(point)] * frame;
+        let from = Spot::of(&(ball_pose.rotation.inverse() * mated(&port_pose, 0.0).rotation));
+        let others = self.connections.iter().filter(|other| **other != connection).map(Connection::modules);
+        let graph = Graph::new(self.modules.len(), others);
+        for turn in turns(from, step) {
+            for (inside, outside, sign) in [(point.module, ball.module, 1.0), (ball.module, point.module, -1.0)] {
+                let motion = Motion::Rotation {
+                    centre: centre.translation.vector,
+                    axis: ball_pose.rotation * turn.axis,
+                    angle: sign * turn.degrees.to_radians(),
+                };
+                for carried in graph.sides(inside, outside, rules.connected) {
+                    let action = Action::Roll { connection, to: turn.to, carried: inside };
+                    self.add(Step { action, carried, motion: motion.clone() }, rules, steps);
+                }
+            }
+        }
+    }
+
+    /// Adds a move unless it moves what is held, or is another one seen from the other side.
+    fn add(&self, step: Step, rules: Rules, steps: &mut Vec<Step>) {
+        let is_held = |module: usize| self.classes[self.modules[module].class].fixed && self.moves(&step, module, 0);
+        let is_other = rules.either_side && self.moves(&step, 0, 0);
+        if !is_other && !(0..self.modules.len()).any(is_held) {
+            steps.push(step);
+        }
+    }
+}
+
+/// The positions next to one, each with the sign of the turn that leads there.
+fn targets(joint: &JointType, from: i32) -> Vec<(i32, i32)> {
+    let next = [1, -1].map(|sign| (joint.canonical(from.saturating_add(sign)), sign));
+    next.into_iter().filter(|(to, _)| joint.allows(*to) && *to != from).collect()
+}
+
+/// A turn of a port about a ball.
+#[derive(Clone, Copy, Debug)]
+struct Turn {
+    to: Spot,
+    /// In the frame of the ball's body.
+    axis: Unit<Vec3>,
+    degrees: f64,
+}
+
+/// All turns by one step out of a spot: about the ball's z axis, towards and from its poles, and in place.
+fn turns(from: Spot, step: f64) -> Vec<Turn> {
+    let micro = (step * f64::from(MICRO)).round() as i32;
+    let half = 180 * MICRO;
+    let is_pole = from.polar() == 0 || from.polar() == half;
+    let about = |axis: Vec3, azimuth: i32| {
+        let turned = Rotation::from_axis_angle(&Vec3::z_axis(), (f64::from(azimuth) / f64::from(MICRO)).to_radians());
+        turned * Unit::new_unchecked(axis)
+    };
+    let mut turns = Vec::new();
+    for sign in [1, -1] {
+        let degrees = f64::from(sign) * step;
+        if !is_pole {
+            let to = Spot::new(from.azimuth() + sign * micro, from.polar(), from.spin());
+            turns.push(Turn { to, axis: Vec3::z_axis(), degrees });
+        }
+        // At a pole azimuth and spin turn about one axis; of their sum (or difference) nothing changes on leaving.
+        let polar = from.polar() + sign * micro;
+        if (0..=half).contains(&polar) {
+            let azimuths: Vec<i32> =
+                if is_pole { (0..360 * MICRO / micro).map(|i| i * micro).collect() } else { vec![from.azimuth()] };
+            for azimuth in azimuths {
+                let shift = if !is_pole {
+                    0
+                } else if from.polar() == 0 {
+                    -azimuth
+                } else {
+                    azimuth
+                };
+                let to = Spot::new(azimuth, polar, from.spin() + shift);
+                turns.push(Turn { to, axis: about(Vec3::y(), azimuth), degrees });
+            }
+        }
+        let to = Spot::new(from.azimuth(), from.polar(), from.spin() + sign * micro);
+        turns.push(Turn { to, axis: Unit::new_normalize(from.direction()), degrees });
+    }
+    turns
+}

@@ -1,0 +1,140 @@
+//! The entry for linkages: a start, a goal and what is wanted in, plans with proofs out.
+
+use std::time::Instant;
+
+use planners::Width;
+
+use crate::reconfigure::engines::{Task, Translation};
+use crate::reconfigure::options::{Event, Options};
+use crate::reconfigure::plan::{Plan, Report};
+use crate::reconfigure::refusal::{Impossible, Refusal, Rejection, Which};
+use crate::reconfigure::worst::Worst;
+use crate::robot::linkage::{Goal, Linkage};
+
+use super::action::Action;
+use super::arrangement::Arrangement;
+use super::assembly::Held;
+use super::compose::compose;
+use super::domain::{Domain, width};
+use super::problem::Problem;
+use super::saturated::{self, Saturated};
+
+/// Plans how to get from `start` to `goal`, like [`solve`](crate::reconfigure::solve()) does for lattices: with the same
+/// guarantees, by moves that turn one side of a joint or of a connection on a ball.
+///
+/// # Errors
+/// [`Refusal`] for bad input.
+pub fn solve(
+    start: &Linkage,
+    goal: &Goal,
+    options: &Options,
+    on_event: &mut dyn FnMut(&Event),
+) -> Result<Report<Action, Held>, Refusal> {
+    let began = Instant::now();
+    let required = options.min_margin.map_or(start.require.margin, |least| least.max(start.require.margin));
+    let required = (!options.ignore_stability).then_some(required);
+    let problem = match Problem::new(start, goal) {
+        Ok(problem) => problem,
+        Err(Rejection::Refused(refusal)) => return Err(refusal),
+        Err(Rejection::Impossible(reason)) => return Ok(Report::impossible(options.objective, required, reason)),
+    };
+    let domain = Domain::new(&problem, !options.ignore_stability);
+    let ends = Ends::new(&domain);
+    if let Some(fault) = domain.oracle.fault() {
+        return Err(Refusal::Structure(fault));
+    }
+    let solves = || domain.oracle.solves();
+    let task = Task { options, required, began, solves: &solves };
+    let mut report = match ends.reason(required) {
+        Some(reason) => Report::impossible(options.objective, required, reason),
+        None => {
+            let space = Saturated::new(&domain, ends.width(), ends.at_most());
+            task.run_with(&space, &Plans(&domain), |search, floor| search.from_both_ends(floor), on_event)
+        }
+    };
+    if let Some(fault) = domain.oracle.fault() {
+        return Err(Refusal::Structure(fault));
+    }
+    report.statistics.oracle_solves = domain.oracle.solves();
+    report.statistics.seconds = began.elapsed().as_secs_f64();
+    Ok(report)
+}
+
+/// The two ends of every plan.
+struct Ends {
+    ends: [End; 2],
+}
+
+struct End {
+    which: Which,
+    is_connected: bool,
+    worst: Option<Worst<Held>>,
+}
+
+impl Ends {
+    fn new(domain: &Domain) -> Self {
+        let problem = domain.problem;
+        let start = problem.view(&problem.described(&problem.start), problem.start.connections.clone());
+        let goal = problem.view(&problem.wanted(), problem.goal.connections.clone());
+        let own: Vec<usize> = (0..problem.start.modules.len()).collect();
+        // Those modules of the start that the goal's stand for: of each class in their order.
+        let mut of_goal: Vec<usize> = (0..own.len()).collect();
+        of_goal.sort_by_key(|&module| problem.wanted[module]);
+        let mut slots = vec![0; own.len()];
+        for (&module, &slot) in of_goal.iter().zip(&problem.slots) {
+            slots[module] = slot;
+        }
+        let end = |which, view: &super::moves::View, slots: &[usize]| End {
+            which,
+            is_connected: domain.is_connected(view, &view.connections),
+            worst: domain.stability.then(|| domain.oracle.of_state(view, slots, &view.connections)),
+        };
+        Self { ends: [end(Which::Start, &start, &own), end(Which::Goal, &goal, &slots)] }
+    }
+
+    /// Width of the start: no path is wider.
+    fn width(&self) -> Width {
+        self.ends[0].worst.map_or(Width::UNLIMITED, |worst| width(worst.margin))
+    }
+
+    /// No plan has a larger margin.
+    fn at_most(&self) -> f64 {
+        let uppers = self.ends.iter().filter_map(|end| Some(end.worst?.margin.upper));
+        uppers.fold(f64::INFINITY, f64::min)
+    }
+
+    /// Why the ends alone rule out every plan, if they do.
+    fn reason(&self, required: Option<f64>) -> Option<Impossible<Held>> {
+        self.ends.iter().find_map(|end| {
+            if !end.is_connected {
+                return Some(Impossible::Disconnected(end.which));
+            }
+            let (worst, required) = (end.worst?, required?);
+            let upper = worst.margin.upper;
+            (upper < required || upper == f64::NEG_INFINITY).then(|| Impossible::Unstable {
+                which: end.which,
+                margin: worst.margin,
+                required,
+                connection: worst.weakest,
+            })
+        })
+    }
+}
+
+/// How paths become plans.
+struct Plans<'a>(&'a Domain<'a>);
+
+impl Translation<Saturated<'_>> for Plans<'_> {
+    type Action = Action;
+    type Connection = Held;
+    type Key = Vec<Arrangement>;
+
+    /// The arrangements that the plan passes.
+    fn key(&self, path: &[saturated::Action]) -> Vec<Arrangement> {
+        path.iter().map(|action| action.to.arrangement.clone()).collect()
+    }
+
+    fn plan(&self, path: &[saturated::Action]) -> Plan<Action, Held> {
+        compose(self.0, path)
+    }
+}

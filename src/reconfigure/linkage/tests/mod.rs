@@ -1,0 +1,1 @@
+//! Laws of linkages' moves and states, and the planner against unlike methods.
