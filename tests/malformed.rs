@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use libtest_mimic::{Arguments, Failed, Trial};
 use steadfast::io::{
     Diagnostics, SourceFile, no_references, read_catalogue, read_certificate, read_checkable, read_configuration,
-    read_plan, read_problem, read_structure,
+    read_plan, read_problem, read_structure, read_verifiable,
 };
 
 const KINDS: [&str; 8] =
@@ -63,7 +63,7 @@ fn read(kind: &str, file: &SourceFile) -> Result<(), Diagnostics> {
         "catalogue" => read_catalogue(file).map(drop),
         "configuration" => read_checkable(file, &references).map(drop),
         "lattice" => read_configuration(file, &references).map(drop),
-        "plan" => read_plan(file).map(drop),
+        "plan" => read_verifiable(file).map(drop),
         "certificate" => read_certificate(file).map(drop),
         _ => {
             let text = match kind {

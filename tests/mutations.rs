@@ -3,8 +3,8 @@
 
 use steadfast::io::{
     SourceFile, no_references, read_catalogue, read_certificate, read_configuration, read_linkage, read_plan,
-    read_problem, read_structure, write_catalogue, write_certificate, write_configuration, write_linkage, write_plan,
-    write_structure,
+    read_problem, read_structure, write_catalogue, write_certificate, write_configuration, write_linkage,
+    write_linkage_plan, write_plan, write_structure,
 };
 
 /// Mutations of each kind of file.
@@ -175,6 +175,18 @@ fn plans() {
         assert_eq!(read_plan(&SourceFile::new("again", text)), Ok(plan));
         Ok(())
     });
+}
+
+#[test]
+fn plans_of_linkages() {
+    for (name, seed) in [("linkage_plan.json", 0x1656_67b1), ("joint_plan.json", 0xe654_6b64)] {
+        damage(name, seed, |file| {
+            let plan = read_linkage_plan(file).map_err(|e| e.to_string())?;
+            let text = write_linkage_plan(&plan).unwrap();
+            assert_eq!(read_linkage_plan(&SourceFile::new("again", text)), Ok(plan));
+            Ok(())
+        });
+    }
 }
 
 #[test]
