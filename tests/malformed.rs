@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use libtest_mimic::{Arguments, Failed, Trial};
 use steadfast::io::{
     Diagnostics, SourceFile, no_references, read_catalogue, read_certificate, read_checkable, read_configuration,
-    read_plan, read_problem, read_structure, read_verifiable,
+    read_problem, read_structure, read_verifiable,
 };
 
 const KINDS: [&str; 8] =

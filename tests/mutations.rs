@@ -2,8 +2,8 @@
 //! is accepted must be written and read back equal.
 
 use steadfast::io::{
-    SourceFile, no_references, read_catalogue, read_certificate, read_configuration, read_linkage, read_plan,
-    read_problem, read_structure, write_catalogue, write_certificate, write_configuration, write_linkage,
+    SourceFile, no_references, read_catalogue, read_certificate, read_configuration, read_linkage, read_linkage_plan,
+    read_plan, read_problem, read_structure, write_catalogue, write_certificate, write_configuration, write_linkage,
     write_linkage_plan, write_plan, write_structure,
 };
 
