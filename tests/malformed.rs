@@ -49,7 +49,7 @@ fn main() {
         bounded(
             "configuration",
             format!(
-                r#"{{"format":"configuration/1","catalogue":"freesn","gravity_m_s2":[0,0,0],"connections":"touching",
+                r#"{{"format":"configuration/1","catalogue":"freesn","gravity_m_s2":[0,0,0],"connections":[],
                 "require":{{"connected":false}},"modules":[{modules}]}}"#
             ),
         )
