@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use libtest_mimic::{Arguments, Failed, Trial};
 use steadfast::io::{
     Diagnostics, SourceFile, no_references, read_catalogue, read_certificate, read_checkable, read_configuration,
-    read_linkage, read_plan, read_problem, read_structure,
+    read_linkage, read_problem, read_structure, read_verifiable,
 };
 
 const KINDS: [&str; 8] =
@@ -59,7 +59,7 @@ fn main() {
         bounded(
             "configuration",
             format!(
-                r#"{{"format":"configuration/1","catalogue":"freesn","gravity_m_s2":[0,0,0],"connections":"touching",
+                r#"{{"format":"configuration/1","catalogue":"freesn","gravity_m_s2":[0,0,0],"connections":[],
                 "require":{{"connected":false}},"modules":[{modules}]}}"#
             ),
         )
@@ -74,7 +74,7 @@ fn read(kind: &str, file: &SourceFile) -> Result<(), Diagnostics> {
         "configuration" => read_checkable(file, &references).map(drop),
         "lattice" => read_configuration(file, &references).map(drop),
         "rofi" => read_linkage(file, &no_references).map(drop),
-        "plan" => read_plan(file).map(drop),
+        "plan" => read_verifiable(file).map(drop),
         "certificate" => read_certificate(file).map(drop),
         _ => {
             let text = match kind {

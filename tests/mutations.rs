@@ -2,9 +2,9 @@
 //! is accepted must be written and read back equal.
 
 use steadfast::io::{
-    Form, SourceFile, no_references, read_catalogue, read_certificate, read_configuration, read_linkage, read_plan,
-    read_problem, read_structure, write_catalogue, write_certificate, write_configuration, write_linkage, write_plan,
-    write_rofi, write_structure,
+    Form, SourceFile, no_references, read_catalogue, read_certificate, read_configuration, read_linkage,
+    read_linkage_plan, read_plan, read_problem, read_structure, write_catalogue, write_certificate,
+    write_configuration, write_linkage, write_linkage_plan, write_plan, write_rofi, write_structure,
 };
 use steadfast::robot::linkage::Linkage;
 
@@ -208,6 +208,18 @@ fn rofi_texts() {
 #[test]
 fn rofi_voxels() {
     damaged_rofi("rofi_voxels.json", 0x7f4a_7c15, Form::RofiVoxels);
+}
+
+#[test]
+fn plans_of_linkages() {
+    for (name, seed) in [("linkage_plan.json", 0x1656_67b1), ("joint_plan.json", 0xe654_6b64)] {
+        damage(name, seed, |file| {
+            let plan = read_linkage_plan(file).map_err(|e| e.to_string())?;
+            let text = write_linkage_plan(&plan).unwrap();
+            assert_eq!(read_linkage_plan(&SourceFile::new("again", text)), Ok(plan));
+            Ok(())
+        });
+    }
 }
 
 #[test]
