@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use libtest_mimic::{Arguments, Failed, Trial};
 use problems::{ByGeometry, FewestMoves, LargestMargin, PlanningCase};
-use steadfast::io::{LatticeProblem, PlanDocument, SourceFile, no_references, read_plan, read_problem, write_plan};
+use steadfast::io::{LatticeProblem, PlanDocument, SourceFile, read_plan, read_problem, write_plan};
 use steadfast::reconfigure::replay::{Fault, replay};
 use steadfast::reconfigure::{MARGIN_TOLERANCE, Objective, Options, Outcome, Plan, Reduction, Report, solve};
 
@@ -56,7 +56,11 @@ fn trials(name: &str, case: &PlanningCase) -> Vec<Trial> {
 fn read(name: &str) -> Result<LatticeProblem, Failed> {
     let directory = problems::root().join("cubes").join(name);
     let file = |which: &str| std::fs::read(directory.join(which)).map(|bytes| SourceFile::new(which, bytes));
-    let problem = read_problem(&file("start.json")?, &file("goal.json")?, &no_references)?;
+    let beside = |_: &str, name: &str| {
+        let bytes = std::fs::read(directory.join(name)).map_err(|error| error.to_string())?;
+        Ok(SourceFile::new(name, bytes))
+    };
+    let problem = read_problem(&file("start.json")?, &file("goal.json")?, &beside)?;
     problem.into_lattice().ok_or_else(|| "not all modules sit in a lattice".into())
 }
 

@@ -16,8 +16,8 @@ use steadfast::reconfigure::{
     Which,
 };
 use steadfast::robot::{
-    Catalogue, Cell, Configuration, Environment, Face, FaceConnection, Goal, Ground, Matching, Module, ModuleLoad,
-    Obstacle, Orientation, Placement, Port, Requirement, Shape,
+    Catalogue, Cell, Configuration, Environment, Face, FaceConnection, Goal, Ground, HeightField, Hull, Matching, Mesh,
+    Module, ModuleLoad, Obstacle, Orientation, Placement, Port, Requirement, Shape, Terrain,
 };
 use steadfast::spatial::{Pose, Rotation, Vec3};
 use steadfast::statics::Bracket;
@@ -71,18 +71,34 @@ fn catalogue() -> impl Strategy<Value = Catalogue> {
     })
 }
 
+/// Every kind of shape that an obstacle has, of a few metres.
+fn terrain() -> impl Strategy<Value = Terrain> {
+    let size = || 0.01..1.0;
+    let points = || vec([size(), size(), size()].prop_map(Vec3::from), 4..9);
+    let mesh = (points(), vec([0u32..4, 0u32..4, 0u32..4], 1..6))
+        .prop_filter_map("no area", |(points, triangles)| Mesh::new(points, triangles).ok());
+    prop_oneof![
+        [size(), size(), size()].prop_map(|half| Shape::Cuboid { half_extents: Vec3::from(half) }.into()),
+        (size(), size()).prop_map(|(radius, height)| Shape::Cylinder { radius, height }.into()),
+        size().prop_map(|radius| Shape::Ball { radius }.into()),
+        points().prop_filter_map("flat", |points| Some(Shape::Convex(Arc::new(Hull::new(points).ok()?)).into())),
+        Just(Terrain::HalfSpace),
+        (size(), size(), vec(vec(size(), 3), 2..4))
+            .prop_map(|(x, y, heights)| { Terrain::HeightField(Arc::new(HeightField::new([x, y], heights).unwrap())) }),
+        mesh.prop_map(|mesh| Terrain::Mesh(Arc::new(mesh))),
+    ]
+}
+
 prop_compose! {
     /// An obstacle where no module can be.
     fn obstacles()(
-        half in [0.01..1.0, 0.01..1.0, 0.01..1.0], at in [50.0..60.0, -60.0..60.0, -60.0..60.0],
+        shape in terrain(), at in [50.0..60.0, -60.0..60.0, -60.0..60.0],
         turn in [-3.2..3.2, -1.6..1.6, -3.2..3.2], friction in number(),
     ) -> Obstacle {
         let rotation = Rotation::from_euler_angles(turn[0], turn[1], turn[2]);
-        Obstacle {
-            shape: Shape::Cuboid { half_extents: Vec3::from(half) }.into(),
-            pose: Pose::from_parts(Vec3::from(at).into(), rotation),
-            friction: friction.abs(),
-        }
+        // A half-space that looks away from the modules.
+        let rotation = if shape == Terrain::HalfSpace { Rotation::from_euler_angles(0.0, -1.5, 0.0) } else { rotation };
+        Obstacle { shape, pose: Pose::from_parts(Vec3::from(at).into(), rotation), friction: friction.abs() }
     }
 }
 

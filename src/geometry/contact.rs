@@ -3,7 +3,7 @@
 use crate::spatial::Vec3;
 
 use super::figure::Figure;
-use super::polygon::{Point2, clip, common_of_segments, convex_hull, crossing, distance_to_segment};
+use super::polygon::{Point2, clip, common_of_segments, convex_hull, crossing, depth_within, distance_to_segment};
 use super::separation::{Separation, separations};
 use super::solid::Solid;
 use super::tolerances::SAME_NORMAL;
@@ -33,10 +33,37 @@ pub fn contact(a: &Solid, b: &Solid, tolerance: f64) -> Option<ContactPatch> {
     let normal = touching_normal(a, b, tolerance)?;
     let plane = Plane::across(normal);
     let (a, b) = (Figure::new(a), Figure::new(b));
-    let common = plane.common(&a, &b, tolerance);
+    let [own, theirs] = [plane.lowest(&a, tolerance), plane.highest(&b, tolerance)];
+    let common = convex_hull(intersection(own.clone(), theirs.clone(), tolerance), tolerance);
+    let middle = common.iter().sum::<Point2>() / common.len().max(1) as f64;
+    if !is_only_normal([(&a, &own), (&b, &theirs)], &middle, tolerance) {
+        return None;
+    }
     let level = (b.reach(&normal) - a.reach(&-normal)) / 2.0;
-    let points: Vec<_> = convex_hull(common, tolerance).iter().map(|p| plane.at(p, level)).collect();
+    let points: Vec<_> = common.iter().map(|p| plane.at(p, level)).collect();
     (!points.is_empty()).then_some(ContactPatch { normal, points })
+}
+
+/// Whether figures that touch at `middle` with these features do so along one normal only. Of polytopes the
+/// separating directions have said so; a cylinder's rim has many at every point.
+fn is_only_normal(sides: [(&Figure, &[Point2]); 2], middle: &Point2, tolerance: f64) -> bool {
+    let [(a, own), (b, theirs)] = sides;
+    let is_polytopes = !a.is_round() && !b.is_round();
+    if is_polytopes || a.ball().is_some() || b.ball().is_some() {
+        return true;
+    }
+    let in_face = |feature: &[Point2]| feature.len() >= 3 && depth_within(middle, feature) > tolerance;
+    let in_side = |(figure, feature): (&Figure, &[Point2])| {
+        figure.is_round() && feature.len() == 2 && feature.iter().all(|end| (end - middle).norm() > tolerance)
+    };
+    let in_edge = |feature: &[Point2]| is_well_inside(middle, feature, tolerance);
+    let on_rim = |(figure, feature): (&Figure, &[Point2])| figure.is_round() && feature.len() == 1;
+    in_face(own)
+        || in_face(theirs)
+        || in_side(sides[0])
+        || in_side(sides[1])
+        || (on_rim(sides[0]) && (in_edge(theirs) || on_rim(sides[1])))
+        || (on_rim(sides[1]) && in_edge(own))
 }
 
 /// Contact of a solid with a half-space: its corners within `tolerance` in m of the plane at `level` along
@@ -54,6 +81,14 @@ pub(super) fn half_space_contact(solid: &Solid, normal: &Vec3, level: f64, toler
     Some(ContactPatch { normal: *normal, points: flat.iter().map(|p| plane.at(p, level)).collect() })
 }
 
+/// Whether a rim that crosses a segment at a point does so away from its ends: even where it runs almost along the
+/// segment, it is beyond the tolerance there.
+pub(super) fn is_well_inside(point: &Point2, segment: &[Point2], tolerance: f64) -> bool {
+    let &[from, to] = segment else { return false };
+    let room = (2.0 * tolerance * (to - from).norm()).sqrt();
+    (from - point).norm() > room && (to - point).norm() > room
+}
+
 /// The one direction along which two solids touch; `None` when they do not, or
 /// when there is more than one.
 fn touching_normal(a: &Solid, b: &Solid, tolerance: f64) -> Option<Vec3> {
@@ -61,10 +96,11 @@ fn touching_normal(a: &Solid, b: &Solid, tolerance: f64) -> Option<Vec3> {
     if found.iter().any(|s| s.gap > tolerance) {
         return None;
     }
-    let touching = || found.iter().filter(|s| s.gap >= -tolerance);
+    let touching = || found.iter().filter(|s| s.gap >= -tolerance && s.is_exact);
     let first = touching().next()?.normal;
-    if [a, b].iter().any(|solid| matches!(solid.shape, crate::robot::Shape::Ball { .. })) {
-        // A ball has one normal at every point; directions close to it have almost its gap.
+    if [a, b].iter().any(|solid| solid.is_round()) {
+        // What is round has almost the same gap along directions close by; whether the
+        // best is the only one is for the features to say.
         return touching().copied().reduce(wider).map(|s| s.normal);
     }
     touching().all(|s| first.cross(&s.normal).norm() <= SAME_NORMAL).then_some(first)
@@ -113,11 +149,6 @@ impl Plane {
     fn flattened(&self, figure: &Figure, direction: Vec3, tolerance: f64) -> Vec<Point2> {
         let feature = figure.feature(&direction, tolerance);
         convex_hull(feature.iter().map(|p| self.flat(p)).collect(), tolerance)
-    }
-
-    /// What two figures that touch along the normal have in common.
-    fn common(&self, above: &Figure, below: &Figure, tolerance: f64) -> Vec<Point2> {
-        intersection(self.lowest(above, tolerance), self.highest(below, tolerance), tolerance)
     }
 }
 

@@ -10,6 +10,7 @@ use smallvec::SmallVec;
 use crate::robot::Shape;
 use crate::spatial::{Point, Pose, Vec3};
 
+use super::curve::{Curve, Curves};
 use super::solid::Solid;
 
 /// Corners of the polygon that stands for the rim of a cylinder's cap where that is a
@@ -219,10 +220,10 @@ impl Figure {
         core
     }
 
-    /// Unit vector of the shortest way from `other` to this figure, or out of it where they overlap:
-    /// found by iteration, so close to the best direction rather than exactly that. Figures that are round
+    /// Unit vector of the shortest way from `other` to this figure, or out of it where they overlap, and a point
+    /// near where it starts: found by iteration, so close to the best direction rather than exactly that. Figures that are round
     /// are made smaller for it by `skin` in m, as touching ones have no shortest way.
-    pub fn towards_from(&self, other: &Self, skin: f64) -> Option<Vec3> {
+    pub fn towards_from(&self, other: &Self, skin: f64) -> Option<(Vec3, Vec3)> {
         // The distance from a ball's centre is its radius already.
         let bare = if self.ball().is_some() || other.ball().is_some() { 0.0 } else { skin };
         let [a, b] = [self, other].map(|figure| figure.core(bare));
@@ -233,22 +234,36 @@ impl Figure {
         let between = b.figure.points[0] - a.figure.points[0];
         let first = between.try_normalize(0.0).unwrap_or_else(Vec3::x);
         simplex.reset(CsoPoint::from_shapes(&here, &a, &b, parry(first)));
-        let way = match gjk::closest_points(&here, &a, &b, f64::MAX, true, &mut simplex) {
-            GJKResult::ClosestPoints(on_a, on_b, _) => ours(on_a - on_b),
+        let (way, near) = match gjk::closest_points(&here, &a, &b, f64::MAX, true, &mut simplex) {
+            GJKResult::ClosestPoints(on_a, on_b, _) => (ours(on_a - on_b), ours(on_a)),
             GJKResult::Intersection => {
                 let contact = contact_support_map_support_map(&here, &a, &b, f64::MAX)?;
-                -ours(contact.normal1)
+                (-ours(contact.normal1), ours(contact.point1))
             }
             GJKResult::Proximity(_) | GJKResult::NoIntersection(_) => return None,
         };
-        way.try_normalize(0.0).filter(|way| way.iter().all(|c| c.is_finite()))
+        let way = way.try_normalize(0.0).filter(|way| way.iter().all(|c| c.is_finite()))?;
+        Some((way, near + origin))
     }
 
-    /// The part of `direction` across a cylinder's axis, unit length.
-    pub fn across(&self, direction: &Vec3) -> Option<Vec3> {
+    /// The corner, the edge, the rim or the axis of the curved side that lie within `slack` in m of the farthest point along
+    /// `direction` (unit), where it is one of these.
+    pub fn curves(&self, direction: &Vec3, slack: f64) -> Curves {
         match self.round {
-            Some(Round::Cylinder { axis, .. }) => (direction - axis * axis.dot(direction)).try_normalize(1e-9),
-            Some(Round::Ball { .. }) | None => None,
+            None => match self.feature(direction, slack)[..] {
+                [corner] => std::iter::once(Curve::Corner(corner)).collect(),
+                [from, to] => std::iter::once(Curve::Edge { at: from, along: (to - from).normalize() }).collect(),
+                _ => Curves::new(),
+            },
+            Some(Round::Ball { .. }) => Curves::new(),
+            Some(Round::Cylinder { axis, radius, .. }) => {
+                let end = self.points[usize::from(axis.dot(direction) > 0.0)];
+                let mut curves: Curves = std::iter::once(Curve::Rim { centre: end, axis, radius }).collect();
+                if (self.points[1] - self.points[0]).dot(direction).abs() <= slack {
+                    curves.push(Curve::Axis { at: end, along: axis });
+                }
+                curves
+            }
         }
     }
 }

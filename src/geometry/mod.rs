@@ -11,8 +11,11 @@
 
 mod broad_phase;
 mod contact;
+mod curve;
 mod environment;
 mod figure;
+#[cfg(test)]
+mod laws;
 mod linkage;
 mod motion;
 mod polygon;

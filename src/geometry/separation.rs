@@ -13,6 +13,7 @@ use smallvec::SmallVec;
 
 use crate::spatial::Vec3;
 
+use super::curve::across;
 use super::figure::Figure;
 use super::solid::Solid;
 use super::tolerances::{PARALLEL, SKIN};
@@ -25,6 +26,9 @@ pub(super) struct Separation {
     /// How far the first lies beyond the second along it in m; negative when
     /// their projections overlap.
     pub gap: f64,
+    /// Whether the direction is where the features it comes from say, rather than where an
+    /// iteration ended.
+    pub is_exact: bool,
 }
 
 /// The gaps along all candidate directions, faces first.
@@ -44,24 +48,30 @@ pub(super) fn of_figures(a: &Figure, b: &Figure, skin: f64) -> Separations {
     let mut directions: SmallVec<[Vec3; 16]> = a.normals().iter().chain(b.normals()).copied().collect();
     let crossed = a.edges().iter().flat_map(|edge| b.edges().iter().map(|other| edge.cross(other)));
     directions.extend(crossed.filter(|cross| cross.norm_squared() > PARALLEL).map(|cross| cross.normalize()));
+    let mut proposed = None;
     if (a.is_round() || b.is_round())
-        && let Some(direction) = a.towards_from(b, skin)
+        && let Some((direction, near)) = a.towards_from(b, skin)
     {
-        directions.extend(a.across(&direction));
-        directions.extend(b.across(&direction));
-        directions.push(direction);
+        // Loose enough for the error of the iteration, and small against either.
+        let loose = 10.0 * skin;
+        let curves = [a.curves(&-direction, loose), b.curves(&direction, loose)];
+        directions.extend(across(&curves[0], &curves[1], &near));
+        proposed = Some(direction);
     }
-    directions.into_iter().map(|direction| along(a, b, direction)).collect()
+    // A ball's centre is its radius away from what it touches: far enough for the iteration.
+    let is_ball = a.ball().is_some() || b.ball().is_some();
+    let exact = directions.into_iter().map(|direction| along(a, b, direction, true));
+    exact.chain(proposed.map(|direction| along(a, b, direction, is_ball))).collect()
 }
 
 /// The larger of the gaps along a direction and against it.
-fn along(a: &Figure, b: &Figure, direction: Vec3) -> Separation {
+fn along(a: &Figure, b: &Figure, direction: Vec3, is_exact: bool) -> Separation {
     let forwards = -a.reach(&-direction) - b.reach(&direction);
     let backwards = -a.reach(&direction) - b.reach(&-direction);
     if backwards > forwards {
-        Separation { normal: -direction, gap: backwards }
+        Separation { normal: -direction, gap: backwards, is_exact }
     } else {
-        Separation { normal: direction, gap: forwards }
+        Separation { normal: direction, gap: forwards, is_exact }
     }
 }
 
@@ -78,7 +88,7 @@ fn of_cuboids<'a>(a: &'a Solid, half_a: Vec3, b: &'a Solid, half_b: Vec3) -> imp
         let distance = centres.dot(&axis);
         let normal = if distance < 0.0 { -axis } else { axis };
         let gap = distance.abs() - half_extent(a, &half_a, &axis) - half_extent(b, &half_b, &axis);
-        Separation { normal, gap }
+        Separation { normal, gap, is_exact: true }
     })
 }
 

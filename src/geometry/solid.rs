@@ -49,6 +49,14 @@ impl Solid {
         }
     }
 
+    /// Whether it is bounded by more than planes.
+    pub(super) fn is_round(&self) -> bool {
+        match self.shape {
+            Shape::Cuboid { .. } | Shape::Convex(_) => false,
+            Shape::Cylinder { .. } | Shape::Ball { .. } => true,
+        }
+    }
+
     /// Its axes in W, unit length.
     pub(super) fn axes(&self) -> [Vec3; 3] {
         let matrix = self.pose.rotation.to_rotation_matrix().into_inner();

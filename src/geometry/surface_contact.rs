@@ -9,7 +9,7 @@
 
 use crate::spatial::Vec3;
 
-use super::contact::{ContactPatch, Plane, intersection, wider};
+use super::contact::{ContactPatch, Plane, intersection, is_well_inside, wider};
 use super::figure::Figure;
 use super::polygon::{Point2, convex_hull, depth_within, distance_to_segment};
 use super::separation::{Separation, Separations, of_figures};
@@ -101,8 +101,8 @@ impl Touching<'_> {
 
     /// The directions along which the figures touch, each once.
     fn candidates(&self, found: &Separations) -> Vec<Separation> {
-        let touching = found.iter().copied().filter(|s| s.gap >= -self.tolerance);
-        if self.figure.ball().is_some() {
+        let touching = found.iter().copied().filter(|s| s.gap >= -self.tolerance && s.is_exact);
+        if self.figure.is_round() {
             return touching.reduce(wider).into_iter().collect();
         }
         let mut distinct: Vec<Separation> = Vec::new();
@@ -171,7 +171,10 @@ fn is_across_ridge(
     let tolerance = touching.tolerance;
     let inside = |segment: &[Point2]| segment.len() == 2 && segment.iter().all(|end| (end - middle).norm() > tolerance);
     let is_smooth = touching.figure.ball().is_some();
-    if !(is_smooth || inside(own)) {
+    // A rim crosses an edge in a point of its own.
+    let crosses =
+        inside(own) || (touching.figure.is_round() && own.len() == 1 && is_well_inside(middle, theirs, tolerance));
+    if !(is_smooth || crosses) {
         return false;
     }
     // What of the triangle is touched: an edge between its ends, or a corner with the edges that meet there.

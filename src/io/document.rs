@@ -1,7 +1,7 @@
 //! What files mean, once read: core types with the names that the file gave.
 
 use super::certificate_document::CertificateDocument;
-use super::plan_document::PlanDocument;
+use super::plan_document::{LinkagePlanDocument, PlanDocument};
 use crate::robot::linkage::{self, Linkage};
 use crate::robot::{Configuration, Goal};
 use crate::statics::Structure;
@@ -117,8 +117,10 @@ pub enum Checkable {
 /// What `plan verify` can look at.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Verifiable {
-    /// A plan with its problem.
+    /// A plan for lattice modules with its problem.
     Plan(Box<PlanDocument>),
+    /// A plan for a linkage with its problem.
+    LinkagePlan(Box<LinkagePlanDocument>),
     /// A certificate with its structure.
     Certificate(Box<CertificateDocument>),
 }

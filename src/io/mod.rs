@@ -41,14 +41,14 @@ pub use document::{
 };
 pub use form::Form;
 pub use load_range_report::LoadRangeReport;
-pub use plan_document::{Contradiction, PlanDocument};
+pub use plan_document::{Contradiction, LinkagePlanDocument, PlanDocument};
 pub use read::{
-    read_catalogue, read_certificate, read_checkable, read_configuration, read_linkage, read_plan, read_problem,
-    read_structure, read_verifiable,
+    read_catalogue, read_certificate, read_checkable, read_configuration, read_linkage, read_linkage_plan, read_plan,
+    read_problem, read_structure, read_verifiable,
 };
 pub use schema::{schema, schema_names};
 pub use turn::AxisAngle;
 pub use write::{
     Unwritable, in_space_because, write_catalogue, write_certificate, write_check, write_configuration, write_linkage,
-    write_load_range, write_plan, write_rofi, write_structure,
+    write_linkage_plan, write_load_range, write_plan, write_rofi, write_structure,
 };

@@ -2,21 +2,26 @@
 
 use std::fmt;
 
-use super::document::LatticeProblem;
+use super::document::{LatticeProblem, LinkageProblem};
 use super::turn::AxisAngle;
-use crate::reconfigure::{Plan, Report};
+use crate::reconfigure::linkage::assembly::Held;
+use crate::reconfigure::{Action, Plan, Report, linkage};
+use crate::robot::FaceConnection;
 
-/// All that a plan file says.
+/// All that a plan file says: of a problem `P` with actions `A` and connections `C`, by default those of lattices.
 #[derive(Clone, Debug, PartialEq)]
-pub struct PlanDocument {
+pub struct PlanDocument<P = LatticeProblem, A = Action, C = FaceConnection> {
     /// The problem, so that the file stands on its own.
-    pub problem: LatticeProblem,
+    pub problem: P,
     /// What the search answered.
-    pub report: Report,
+    pub report: Report<A, C>,
     /// Pivots of the file that contradict themselves, by plan and action. A plan with one
     /// of them does not verify. Always empty for what a search answered.
     pub contradictions: Vec<Contradiction>,
 }
+
+/// All that a plan file for a linkage says.
+pub type LinkagePlanDocument = PlanDocument<LinkageProblem, linkage::Action, Held>;
 
 /// A pivot whose axis or angle, as its file gives them, is not that of the turn from where
 /// the module is to where the same action says that it ends.
@@ -32,14 +37,14 @@ pub struct Contradiction {
     pub actual: Option<AxisAngle>,
 }
 
-impl PlanDocument {
+impl<P, A: Clone, C: Clone> PlanDocument<P, A, C> {
     /// What a search answered to a problem.
-    pub fn new(problem: LatticeProblem, report: &Report) -> Self {
+    pub fn new(problem: P, report: &Report<A, C>) -> Self {
         Self { problem, report: report.clone(), contradictions: Vec::new() }
     }
 
     /// The plans, best first.
-    pub fn plans(&self) -> impl Iterator<Item = &Plan> {
+    pub fn plans(&self) -> impl Iterator<Item = &Plan<A, C>> {
         self.report.plan.iter().chain(&self.report.alternatives)
     }
 

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
 
 /// Reconfiguration planner for modular robots in which every transient state is proved stable
 #[derive(Debug, Parser)]
@@ -97,6 +97,9 @@ pub enum Command {
     /// at its ends
     #[command(after_help = RANGE_EXIT_CODES)]
     LoadRange(LoadRangeArguments),
+    /// Map where a strut may stand over its node, or a joint in its range, and with what margin
+    #[command(after_help = MOTION_EXIT_CODES)]
+    MotionRange(MotionRangeArguments),
     /// Write a robot in another format: a configuration/1 file, or one of the RoFI platform's
     Convert(ConvertArguments),
     /// Print the JSON Schema of a format, or the names of all formats
@@ -152,6 +155,40 @@ pub struct LoadRangeArguments {
     /// Print a load-range/1 document (and errors as an errors/1 document)
     #[arg(long)]
     pub json: bool,
+}
+
+const MOTION_EXIT_CODES: &str = "Exit codes: 0 the robot stands in some position; 2 usage; 10 it stands in none; \
+11 not decided; 30 bad input; 101 a bug";
+
+#[derive(Debug, Args)]
+#[command(group(ArgGroup::new("what").required(true).args(["connection", "joint"])))]
+pub struct MotionRangeArguments {
+    /// A configuration/1 file of modules outside lattices; `-` reads standard input
+    pub file: PathBuf,
+    /// The connection of a strut and a node: two modules, or ports where they have several connections. The
+    /// first one's side moves, unless it is fixed
+    #[arg(long, value_name = "A,B")]
+    pub connection: Option<String>,
+    /// The joint: a module, a dot and its name. The child's side moves, unless it is fixed
+    #[arg(long, value_name = "MODULE.JOINT")]
+    pub joint: Option<String>,
+    /// Distance of positions in degrees
+    #[arg(long, value_name = "DEGREES", default_value_t = 15.0, value_parser = map_step)]
+    pub step: f64,
+    /// Write every position with its verdict and margin as CSV; `-` writes to standard output
+    #[arg(long, value_name = "FILE")]
+    pub csv: Option<PathBuf>,
+    /// Write a picture in polar coordinates, coloured by margin; `-` writes to standard output
+    #[arg(long, value_name = "FILE")]
+    pub svg: Option<PathBuf>,
+}
+
+fn map_step(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if (0.5..=90.0).contains(&value) => Ok(value),
+        Ok(_) => Err("a step is from 0.5 to 90 degrees".to_string()),
+        Err(error) => Err(error.to_string()),
+    }
 }
 
 fn triple(text: &str) -> Result<[f64; 3], String> {

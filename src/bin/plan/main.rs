@@ -8,12 +8,14 @@ mod check;
 mod convert;
 mod exit;
 mod explain;
+mod family;
 mod files;
 mod gives_way;
 mod load_range;
-mod naming;
+mod motion_range;
 mod order;
 mod output;
+mod polar_map;
 mod progress;
 mod schema;
 mod search;
@@ -34,6 +36,7 @@ fn main() -> ExitCode {
     let exit = match (arguments.command, arguments.planning) {
         (Some(Command::Verify(verify)), _) => verify::run(&verify),
         (Some(Command::Check(check)), _) => check::run(&check),
+        (Some(Command::MotionRange(range)), _) => motion_range::run(&range),
         (Some(Command::Convert(convert)), _) => convert::run(&convert),
         (Some(Command::LoadRange(range)), _) => load_range::run(&range),
         (Some(Command::Schema(schema)), _) => schema::run(&schema),

@@ -6,12 +6,12 @@ use std::process;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use steadfast::io::{LatticeProblem, PlanDocument, Problem, read_problem, write_plan};
-use steadfast::reconfigure::replay::{Replay, replay};
-use steadfast::reconfigure::{Event, Objective, Options, Outcome, Reduction, Refusal, Report, solve};
+use steadfast::io::{Problem, read_problem};
+use steadfast::reconfigure::{Event, Objective, Options, Outcome, Reduction, Refusal};
 
 use crate::arguments::{ObjectiveArgument, PlanningArguments};
 use crate::exit::Exit;
+use crate::family::{Answer, Family};
 use crate::progress::ProgressLine;
 use crate::summary::summary;
 use crate::{files, output};
@@ -24,15 +24,15 @@ const INTERRUPTED: i32 = 130;
 /// # Errors
 /// The output cannot be written.
 pub fn run(arguments: &PlanningArguments) -> io::Result<Exit> {
-    let problem = match read(arguments)? {
-        Ok(Problem::Lattice(problem)) => problem,
-        Ok(Problem::Linkage(_)) => {
-            let file = arguments.start.display().to_string();
-            return output::refused(&file, ["no plans for linkages yet".to_string()], arguments.json);
-        }
-        Err(exit) => return Ok(exit),
-    };
-    let report = match search(arguments, &problem) {
+    match read(arguments)? {
+        Ok(Problem::Lattice(problem)) => plan(arguments, &problem),
+        Ok(Problem::Linkage(problem)) => plan(arguments, &problem),
+        Err(exit) => Ok(exit),
+    }
+}
+
+fn plan<F: Family>(arguments: &PlanningArguments, problem: &F) -> io::Result<Exit> {
+    let report = match search(arguments, problem) {
         Ok(Ok(report)) => report,
         Ok(Err(refusal)) => {
             let file = arguments.start.display().to_string();
@@ -43,14 +43,17 @@ pub fn run(arguments: &PlanningArguments) -> io::Result<Exit> {
             return Ok(Exit::BadInput);
         }
     };
-    let check = match check(&problem, &report) {
+    // Replayed by the code that shares no decision with the search.
+    let required = report.required.unwrap_or(problem.required());
+    let check = report.plan.as_ref().map(|plan| problem.replay(plan, required)).transpose();
+    let check = match check {
         Ok(check) => check,
         Err(refusal) => {
             output::message(&format!("error: {refusal}"))?;
             return Ok(Exit::Bug);
         }
     };
-    let document = match write_plan(&PlanDocument::new(problem.clone(), &report)) {
+    let document = match problem.write(&report) {
         Ok(document) => document,
         Err(trouble) => {
             output::message(&format!("bug: the plan cannot be written: {trouble}"))?;
@@ -64,7 +67,7 @@ pub fn run(arguments: &PlanningArguments) -> io::Result<Exit> {
         output::result(&document)?;
         return Ok(Exit::BadInput);
     }
-    let text = if arguments.json { document } else { summary(&problem, &report, check.as_ref()) };
+    let text = if arguments.json { document } else { summary(problem, &report, check.as_ref()) };
     output::result(&text)?;
     if let Some(check) = &check
         && !arguments.ignore_stability
@@ -89,7 +92,7 @@ fn read(arguments: &PlanningArguments) -> io::Result<Result<Problem, Exit>> {
 }
 
 /// Searches in a pool of the wanted size, until done, out of time, or interrupted.
-fn search(arguments: &PlanningArguments, problem: &LatticeProblem) -> Result<Result<Report, Refusal>, String> {
+fn search<F: Family>(arguments: &PlanningArguments, problem: &F) -> Result<Result<Answer<F>, Refusal>, String> {
     let options = Options {
         objective: match arguments.objective {
             ObjectiveArgument::Margin => Objective::Margin,
@@ -106,7 +109,7 @@ fn search(arguments: &PlanningArguments, problem: &LatticeProblem) -> Result<Res
     let threads = arguments.threads.map_or(0, usize::from);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(|error| error.to_string())?;
     let mut line = ProgressLine::new();
-    let report = pool.install(|| solve(&problem.start, &problem.goal, &options, &mut |event: &Event| line.show(event)));
+    let report = pool.install(|| problem.solve(&options, &mut |event: &Event| line.show(event)));
     line.clear();
     Ok(report)
 }
@@ -122,12 +125,6 @@ fn cancelled_by_interrupt() -> Result<Arc<AtomicBool>, String> {
     };
     ctrlc::set_handler(on_interrupt).map_err(|error| error.to_string())?;
     Ok(cancel)
-}
-
-/// Replays the plan, if there is one, by the code that shares no decision with the search.
-fn check(problem: &LatticeProblem, report: &Report) -> Result<Option<Replay>, Refusal> {
-    let required = report.required.unwrap_or(problem.start.require.margin);
-    report.plan.as_ref().map(|plan| replay(&problem.start, &problem.goal, plan, required)).transpose()
 }
 
 /// Writes beside the file and renames, so that no half-written plan is left.

@@ -2,25 +2,27 @@
 
 use std::fmt::Write;
 
-use steadfast::io::LatticeProblem;
 use steadfast::reconfigure::replay::Replay;
 use steadfast::reconfigure::{Limit, Objective, Outcome, Plan, Report};
-use steadfast::robot::Configuration;
 use steadfast::statics::Bracket;
 
-use crate::naming;
+use crate::family::{Answer, Family};
+use crate::verify;
 
 /// What was found, what it is worth, what limits it, and what was proved.
-pub fn summary(problem: &LatticeProblem, report: &Report, replay: Option<&Replay>) -> String {
-    let start = &problem.start;
+pub fn summary<F: Family>(
+    problem: &F,
+    report: &Answer<F>,
+    replay: Option<&Replay<F::Connection, F::Touched>>,
+) -> String {
     let mut text = headline(report);
     if let Some(plan) = &report.plan {
-        actions(&mut text, start, plan);
-        bottleneck(&mut text, start, plan);
+        actions(&mut text, problem, plan);
+        bottleneck(&mut text, problem, plan);
     }
     for (index, plan) in report.alternatives.iter().enumerate() {
         let _ = writeln!(text, "\nalternative {}: {}", index + 1, worth(plan));
-        actions(&mut text, start, plan);
+        actions(&mut text, problem, plan);
     }
     if let Some(limit) = report.alternatives_cut_by.filter(|_| report.plan.is_some()) {
         let _ = writeln!(text, "\nthere may be further plans as good: the search for them was {}", cut(limit));
@@ -28,7 +30,7 @@ pub fn summary(problem: &LatticeProblem, report: &Report, replay: Option<&Replay
     text.push('\n');
     proved(&mut text, report);
     if let Some(replay) = replay {
-        text.push_str(&verified(start, report, replay));
+        text.push_str(&verified(problem, report, replay));
     }
     let statistics = &report.statistics;
     let _ = writeln!(
@@ -39,7 +41,7 @@ pub fn summary(problem: &LatticeProblem, report: &Report, replay: Option<&Replay
     text
 }
 
-fn headline(report: &Report) -> String {
+fn headline<A, C>(report: &Report<A, C>) -> String {
     match (&report.outcome, &report.plan) {
         (Outcome::Impossible(reason), _) => format!("NO PLAN EXISTS: {reason}\n"),
         (Outcome::OutOfBudget(limit), None) => format!("NO PLAN FOUND: {}\n", stopped(*limit)),
@@ -68,7 +70,7 @@ fn cut(limit: Limit) -> &'static str {
     }
 }
 
-fn worth(plan: &Plan) -> String {
+fn worth<A, C>(plan: &Plan<A, C>) -> String {
     let moves = if plan.moves == 1 { "1 move".to_string() } else { format!("{} moves", plan.moves) };
     let actions =
         if plan.actions.len() == 1 { "1 action".to_string() } else { format!("{} actions", plan.actions.len()) };
@@ -78,10 +80,10 @@ fn worth(plan: &Plan) -> String {
     }
 }
 
-fn actions(text: &mut String, start: &Configuration, plan: &Plan) {
+fn actions<F: Family>(text: &mut String, problem: &F, plan: &Plan<F::Action, F::Connection>) {
     let worst = plan.bottleneck.as_ref().and_then(|bottleneck| bottleneck.action);
     for (index, planned) in plan.actions.iter().enumerate() {
-        let what = naming::action(start, &planned.action);
+        let what = problem.action(&planned.action);
         let margin = planned.margin.map_or_else(String::new, |margin: Bracket| format!("{:.4}", margin.lower));
         let mark = if worst == Some(index) { "  <- bottleneck" } else { "" };
         let row = format!("  {:>3}  {what:<42}  {margin:>8}{mark}", index + 1);
@@ -89,7 +91,7 @@ fn actions(text: &mut String, start: &Configuration, plan: &Plan) {
     }
 }
 
-fn bottleneck(text: &mut String, start: &Configuration, plan: &Plan) {
+fn bottleneck<F: Family>(text: &mut String, problem: &F, plan: &Plan<F::Action, F::Connection>) {
     let Some(bottleneck) = &plan.bottleneck else { return };
     let place = match bottleneck.action {
         None => "the start itself".to_string(),
@@ -97,11 +99,11 @@ fn bottleneck(text: &mut String, start: &Configuration, plan: &Plan) {
         Some(index) => format!("action {} at {:.0} % of the way", index + 1, 100.0 * bottleneck.phase),
     };
     let connection = bottleneck.connection.as_ref();
-    let held = connection.map_or_else(String::new, |pair| format!(", connection {}", naming::connection(start, pair)));
+    let held = connection.map_or_else(String::new, |pair| format!(", {}", problem.held(pair)));
     let _ = writeln!(text, "bottleneck: {place}{held}");
 }
 
-fn proved(text: &mut String, report: &Report) {
+fn proved<A, C>(text: &mut String, report: &Report<A, C>) {
     let proof = &report.proof;
     if matches!(report.outcome, Outcome::Impossible(_)) {
         return;
@@ -126,7 +128,7 @@ fn proved(text: &mut String, report: &Report) {
     let _ = writeln!(text, "{statement}");
 }
 
-fn verified(start: &Configuration, report: &Report, replay: &Replay) -> String {
+fn verified<F: Family>(problem: &F, report: &Answer<F>, replay: &Replay<F::Connection, F::Touched>) -> String {
     match replay.failures.first() {
         None => {
             let (states, margin) = (replay.oracle_solves, replay.margin.lower);
@@ -136,8 +138,8 @@ fn verified(start: &Configuration, report: &Report, replay: &Replay) -> String {
             )
         }
         Some(failure) if report.required.is_none() => {
-            format!("carried out, it would fail: {}\n", crate::verify::sentence(start, report.plan.as_ref(), failure))
+            format!("carried out, it would fail: {}\n", verify::sentence(problem, report.plan.as_ref(), failure))
         }
-        Some(failure) => format!("NOT VERIFIED: {}\n", crate::verify::sentence(start, report.plan.as_ref(), failure)),
+        Some(failure) => format!("NOT VERIFIED: {}\n", verify::sentence(problem, report.plan.as_ref(), failure)),
     }
 }

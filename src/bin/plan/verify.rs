@@ -5,13 +5,13 @@ use std::io;
 use steadfast::certificate::check;
 use steadfast::io::{CertificateDocument, PlanDocument, Verifiable, read_verifiable};
 use steadfast::reconfigure::Plan;
-use steadfast::reconfigure::replay::{Failure, Fault, replay};
-use steadfast::robot::Configuration;
+use steadfast::reconfigure::replay::{Failure, Fault};
 use steadfast::statics::Verdict;
 
 use crate::arguments::VerifyArguments;
 use crate::exit::Exit;
-use crate::{files, naming, output};
+use crate::family::Family;
+use crate::{files, output};
 
 /// How many of a certificate's faults are shown.
 const SHOWN: usize = 5;
@@ -24,6 +24,7 @@ pub fn run(arguments: &VerifyArguments) -> io::Result<Exit> {
     let file = files::read(&arguments.file);
     match read_verifiable(&file) {
         Ok(Verifiable::Plan(document)) => plans(&file.name, &document),
+        Ok(Verifiable::LinkagePlan(document)) => plans(&file.name, &document),
         Ok(Verifiable::Certificate(document)) => certificate(&document),
         Err(diagnostics) => output::bad_input(&diagnostics, false),
     }
@@ -65,8 +66,11 @@ fn certificate(document: &CertificateDocument) -> io::Result<Exit> {
     }
 }
 
+/// All that a plan file says.
+type Document<F> = PlanDocument<F, <F as Family>::Action, <F as Family>::Connection>;
+
 /// Replays every plan of a file and reports the first thing wrong with each, and all of it.
-fn plans(name: &str, document: &PlanDocument) -> io::Result<Exit> {
+fn plans<F: Family>(name: &str, document: &Document<F>) -> io::Result<Exit> {
     if document.plans().next().is_none() {
         output::result("NOTHING TO VERIFY: the file holds no plan\n")?;
         return Ok(Exit::Undecided);
@@ -94,10 +98,14 @@ fn plans(name: &str, document: &PlanDocument) -> io::Result<Exit> {
 }
 
 /// The verdict on one of the file's plans, for people, and whether it verifies.
-fn verify(document: &PlanDocument, index: usize, plan: &Plan) -> Result<(String, bool), String> {
-    let start = &document.problem.start;
-    let required = document.report.required.unwrap_or(start.require.margin);
-    let found = replay(start, &document.problem.goal, plan, required).map_err(|refusal| refusal.to_string())?;
+fn verify<F: Family>(
+    document: &Document<F>,
+    index: usize,
+    plan: &Plan<F::Action, F::Connection>,
+) -> Result<(String, bool), String> {
+    let problem = &document.problem;
+    let required = document.report.required.unwrap_or(problem.required());
+    let found = problem.replay(plan, required).map_err(|refusal| refusal.to_string())?;
     let contradictions: Vec<_> = document.contradictions_of(index).collect();
     if found.is_verified() && contradictions.is_empty() {
         let (states, margin) = (found.oracle_solves, found.margin.lower);
@@ -109,28 +117,35 @@ fn verify(document: &PlanDocument, index: usize, plan: &Plan) -> Result<(String,
     }
     let mut text = "NOT VERIFIED\n".to_string();
     for contradiction in contradictions {
-        let action = naming::action(start, &plan.actions[contradiction.action].action);
+        let action = problem.action(&plan.actions[contradiction.action].action);
         text.push_str(&format!("  action {} ({action}): {contradiction}\n", contradiction.action + 1));
     }
     for failure in &found.failures {
-        text.push_str(&format!("  {}\n", sentence(start, Some(plan), failure)));
+        text.push_str(&format!("  {}\n", sentence(problem, Some(plan), failure)));
     }
     Ok((text, false))
 }
 
 /// A failure in one sentence: which action, how far, what is wrong, what gives way.
-pub fn sentence(start: &Configuration, plan: Option<&Plan>, failure: &Failure) -> String {
+pub fn sentence<F: Family>(
+    problem: &F,
+    plan: Option<&Plan<F::Action, F::Connection>>,
+    failure: &Failure<F::Connection, F::Touched>,
+) -> String {
     let action = failure.action.and_then(|index| Some((index, plan?.actions.get(index)?)));
     let mut sentence = match action {
-        Some((index, planned)) => format!("action {} ({})", index + 1, naming::action(start, &planned.action)),
+        Some((index, planned)) => format!("action {} ({})", index + 1, problem.action(&planned.action)),
         None => "the plan".to_string(),
     };
     if let Some(phase) = failure.phase.filter(|phase| *phase < 1.0) {
         sentence.push_str(&format!(" at {:.0} % of the way", 100.0 * phase));
     }
-    sentence.push_str(&format!(": {}", failure.fault));
-    if let (Fault::Unstable { .. }, Some(pair)) = (&failure.fault, &failure.connection) {
-        sentence.push_str(&format!("; connection {} gives way", naming::connection(start, pair)));
+    match &failure.fault {
+        Fault::Collision { with } => sentence.push_str(&format!(": it collides with {}", problem.touched(with))),
+        fault => sentence.push_str(&format!(": {fault}")),
+    }
+    if let (Fault::Unstable { .. }, Some(held)) = (&failure.fault, &failure.connection) {
+        sentence.push_str(&format!("; {} gives way", problem.held(held)));
     }
     sentence
 }

@@ -48,7 +48,9 @@ impl<'a> Checker<'a> {
         };
         match (name, count("minItems"), count("maxItems")) {
             ("array", Some(least), Some(most)) if least == most => format!("{least} {}", plural()),
+            ("array", Some(least), None) if least > 1 => format!("at least {least} {}", plural()),
             ("array", Some(_), None) => "a list that is not empty".to_string(),
+            ("array", Some(least), Some(most)) => format!("{least} to {most} {}", plural()),
             ("array", ..) => "a list".to_string(),
             ("object", ..) => "an object".to_string(),
             ("number", ..) => "a number".to_string(),

@@ -14,8 +14,10 @@ mod environment;
 mod faults;
 mod goal;
 mod lattice;
+mod lattice_plan;
 mod lattice_type;
 mod linkage;
+mod linkage_plan;
 mod matching;
 mod module_type;
 mod names;
@@ -32,11 +34,12 @@ mod terrain;
 pub(super) use rotation::port_rotation;
 
 use super::certificate_document::CertificateDocument;
+use super::codes;
 use super::diagnostics::Diagnostics;
 use super::document::{Checkable, NamedStructure, Problem, Resolve, SourceFile, Verifiable};
 use super::findings::Findings;
 use super::form::Form;
-use super::plan_document::PlanDocument;
+use super::plan_document::{LinkagePlanDocument, PlanDocument};
 use crate::robot::linkage::Linkage;
 use crate::robot::{Catalogue, Configuration};
 use configuration::{Robot, read_start};
@@ -126,7 +129,7 @@ pub fn read_checkable(file: &SourceFile, resolve: Resolve<'_>) -> Result<Checkab
     findings.finish(value)
 }
 
-/// Reads a `plan/1` file. Checks its form and its names; whether the plan holds is
+/// Reads a `plan/1` file for lattice modules. Checks its form and its names; whether the plan holds is
 /// for a replay to say, and what the file says against itself is kept for the verdict.
 ///
 /// # Errors
@@ -134,7 +137,32 @@ pub fn read_checkable(file: &SourceFile, resolve: Resolve<'_>) -> Result<Checkab
 pub fn read_plan(file: &SourceFile) -> Result<PlanDocument, Diagnostics> {
     let mut findings = Findings::default();
     let document = findings.open(file);
-    let value = document.as_ref().and_then(|document| plan::read(&document.root(), &mut findings));
+    let value = document.as_ref().and_then(|document| match plan::read(&document.root(), &mut findings)? {
+        Verifiable::Plan(plan) => Some(*plan),
+        Verifiable::LinkagePlan(_) | Verifiable::Certificate(_) => {
+            let hint = "all modules of its start must sit in a lattice".to_string();
+            findings.add(&document.root().key("start"), codes::UNSUPPORTED, "is no robot of a lattice", hint);
+            None
+        }
+    });
+    findings.finish(value)
+}
+
+/// Reads a `plan/1` file for a linkage, as [`read_plan`] does one for lattice modules.
+///
+/// # Errors
+/// All problems of the file at once.
+pub fn read_linkage_plan(file: &SourceFile) -> Result<LinkagePlanDocument, Diagnostics> {
+    let mut findings = Findings::default();
+    let document = findings.open(file);
+    let value = document.as_ref().and_then(|document| match plan::read(&document.root(), &mut findings)? {
+        Verifiable::LinkagePlan(plan) => Some(*plan),
+        Verifiable::Plan(_) | Verifiable::Certificate(_) => {
+            let hint = "some module of its start must be outside lattices".to_string();
+            findings.add(&document.root().key("start"), codes::UNSUPPORTED, "is a robot of a lattice", hint);
+            None
+        }
+    });
     findings.finish(value)
 }
 
@@ -160,7 +188,7 @@ pub fn read_verifiable(file: &SourceFile) -> Result<Verifiable, Diagnostics> {
     let value = document.as_ref().and_then(|document| {
         let root = document.root();
         match decode::format_of(&root, &["plan", "certificate"], &mut findings)? {
-            "plan" => plan::read(&root, &mut findings).map(|plan| Verifiable::Plan(Box::new(plan))),
+            "plan" => plan::read(&root, &mut findings),
             _ => certificate::read(&root, &mut findings).map(|found| Verifiable::Certificate(Box::new(found))),
         }
     });

@@ -1,21 +1,19 @@
 //! How a search ended, as `plan/1` says it.
 
 use super::super::codes;
-use super::super::document::LatticeProblem;
 use super::super::findings::{Findings, Place};
 use super::super::wire;
-use super::names::Names;
-use super::sequence::{bracket, pair};
+use super::sequence::{Family, Held, bracket};
 use crate::reconfigure::{Impossible, Limit, Outcome, Which};
 use crate::statics::Bracket;
 
 /// The outcome of a file at `root`, which must have what belongs to it and nothing else.
-pub(super) fn outcome(
+pub(super) fn outcome<F: Family>(
     wire: &wire::Plan,
-    problem: &LatticeProblem,
+    family: &F,
     root: &Place<'_>,
     findings: &mut Findings,
-) -> Option<Outcome> {
+) -> Option<Outcome<F::Connection>> {
     let before = findings.count();
     let mut wrong = |key: &str, message: &str, hint: &str| {
         findings.add(&root.key(key), codes::PLAN, message, hint.to_string());
@@ -55,18 +53,18 @@ pub(super) fn outcome(
     Some(match wire.outcome {
         wire::Outcome::Solved => Outcome::Solved,
         wire::Outcome::Impossible => {
-            Outcome::Impossible(impossible(wire.impossible.as_ref()?, problem, &root.key("impossible"), findings)?)
+            Outcome::Impossible(impossible(wire.impossible.as_ref()?, family, &root.key("impossible"), findings)?)
         }
         wire::Outcome::OutOfBudget => Outcome::OutOfBudget(limit(wire.stopped_by?)),
     })
 }
 
-fn impossible(
+fn impossible<F: Family>(
     wire: &wire::Impossible,
-    problem: &LatticeProblem,
+    family: &F,
     place: &Place<'_>,
     findings: &mut Findings,
-) -> Option<Impossible> {
+) -> Option<Impossible<F::Connection>> {
     Some(match wire {
         wire::Impossible::ModulesDiffer { module_type, start, goal } => Impossible::ModulesDiffer {
             module_type: module_type.clone(),
@@ -75,17 +73,13 @@ fn impossible(
         },
         wire::Impossible::FixedModule { module } => Impossible::FixedModule { module: module.clone() },
         wire::Impossible::Disconnected { which: end } => Impossible::Disconnected(which(*end)),
-        wire::Impossible::Unstable { which: end, margin, required_margin, connection } => {
-            let configuration = match end {
-                wire::Which::Start => &problem.start,
-                wire::Which::Goal => &problem.goal.configuration,
-            };
-            let ids = configuration.modules.iter().map(|module| module.id.as_str()).collect();
-            let modules = Names::new("modules", ids, |_| place.clone(), findings);
-            let connection = match connection {
-                Some(ports) => Some(pair(ports, &modules, &place.key("connection"), findings)?),
-                None => None,
-            };
+        wire::Impossible::Unstable { which: end, margin, required_margin, connection, joint } => {
+            let before = findings.count();
+            let held = Held::of(connection.as_ref(), joint.as_ref(), place, findings);
+            let connection = held.and_then(|held| family.connection(which(*end), held, place, findings));
+            if findings.count() > before {
+                return None;
+            }
             Impossible::Unstable {
                 which: which(*end),
                 margin: margin.map_or(Bracket::exact(f64::NEG_INFINITY), bracket),

@@ -1,51 +1,67 @@
 //! `plan/1` to what the planner reported, with its problem.
 
 use super::super::codes;
-use super::super::document::{Problem, no_references};
+use super::super::document::{Problem, Verifiable, no_references};
 use super::super::findings::{Findings, Place};
 use super::super::plan_document::PlanDocument;
 use super::super::wire;
 use super::decode::decode;
 use super::goal::read_problem;
-use super::names::Names;
+use super::lattice_plan::LatticePlans;
+use super::linkage_plan::LinkagePlans;
 use super::outcome::{limit, outcome};
-use super::sequence::{Parts, Reader};
+use super::sequence::{Family, Parts, sequence};
 use crate::reconfigure::{Objective, Outcome, Proof, Report, Statistics};
 
-pub(super) fn read(root: &Place<'_>, findings: &mut Findings) -> Option<PlanDocument> {
+/// Reads a plan for whatever robot it is.
+pub(super) fn read(root: &Place<'_>, findings: &mut Findings) -> Option<Verifiable> {
     let wire: wire::Plan = decode("plan", root, findings)?;
-    let problem = read_problem(&root.key("start"), &root.key("goal"), &no_references, findings)?;
-    let Problem::Lattice(problem) = problem else { return None };
-    let ids = problem.start.modules.iter().map(|module| module.id.as_str()).collect();
-    let modules = Names::new("modules", ids, |_| root.clone(), findings);
-    let mut reader = Reader { start: &problem.start, modules: &modules, contradictions: Vec::new() };
+    match read_problem(&root.key("start"), &root.key("goal"), &no_references, findings)? {
+        Problem::Lattice(problem) => {
+            let mut family = LatticePlans::new(&problem, root, findings);
+            let report = report(&wire, &mut family, root, findings);
+            let contradictions = family.contradictions;
+            Some(Verifiable::Plan(Box::new(PlanDocument { report: report?, problem, contradictions })))
+        }
+        Problem::Linkage(problem) => {
+            let report = report(&wire, &mut LinkagePlans::new(&problem, root, findings), root, findings);
+            let document = PlanDocument { report: report?, problem, contradictions: Vec::new() };
+            Some(Verifiable::LinkagePlan(Box::new(document)))
+        }
+    }
+}
 
+/// What the search answered.
+fn report<F: Family>(
+    wire: &wire::Plan,
+    family: &mut F,
+    root: &Place<'_>,
+    findings: &mut Findings,
+) -> Option<Report<F::Action, F::Connection>> {
     let best = wire.actions.as_ref().map(|actions| {
         let parts = Parts { margin: wire.margin, moves: wire.moves, bottleneck: wire.bottleneck.as_ref(), actions };
-        reader.sequence(0, parts, root, findings)
+        sequence(family, 0, parts, root, findings)
     });
     let mut alternatives = Vec::with_capacity(wire.alternatives.len());
     for (index, other) in wire.alternatives.iter().enumerate() {
         let wire::Alternative { margin, moves, bottleneck, actions } = other;
         let parts = Parts { margin: *margin, moves: Some(*moves), bottleneck: bottleneck.as_ref(), actions };
         let place = root.key("alternatives").index(index);
-        alternatives.push(reader.sequence(index + 1, parts, &place, findings));
+        alternatives.push(sequence(family, index + 1, parts, &place, findings));
     }
-    let contradictions = reader.contradictions;
     if wire.actions.is_none() && !wire.alternatives.is_empty() {
         let message = "there are alternatives to a plan, but no `actions`";
         let hint = "the best plan stands in `actions`, the further ones in `alternatives`";
         findings.add(&root.key("alternatives"), codes::PLAN, message, hint.to_string());
     }
-    let outcome = outcome(&wire, &problem, root, findings);
+    let outcome = outcome(wire, family, root, findings);
     let statistics = statistics(&wire.statistics, &root.key("statistics"), findings);
-    drop(modules);
     let plan = match best {
         Some(plan) => Some(plan?),
         None => None,
     };
     let outcome = outcome?;
-    let report = Report {
+    Some(Report {
         proof: proof(&wire.proof, &outcome),
         outcome,
         objective: match wire.objective {
@@ -57,12 +73,11 @@ pub(super) fn read(root: &Place<'_>, findings: &mut Findings) -> Option<PlanDocu
         alternatives: alternatives.into_iter().collect::<Option<_>>()?,
         alternatives_cut_by: wire.alternatives_cut_by.map(limit),
         statistics,
-    };
-    Some(PlanDocument { problem, report, contradictions })
+    })
 }
 
 /// A bound that was not proved says nothing; without any plan, everything holds of all plans.
-fn proof(wire: &wire::Proof, outcome: &Outcome) -> Proof {
+fn proof<C>(wire: &wire::Proof, outcome: &Outcome<C>) -> Proof {
     let nothing = match outcome {
         Outcome::Impossible(_) => (f64::NEG_INFINITY, u32::MAX),
         Outcome::Solved | Outcome::OutOfBudget(_) => (f64::INFINITY, 0),

@@ -137,6 +137,9 @@ fn describe(fault: ShapeFault, items: &str) -> (Code, String, &'static str) {
             "lengths are in metres: check the unit",
         ),
         ShapeFault::NotPositive => (codes::OUT_OF_RANGE, "must be more than 0".to_string(), "a length is positive"),
+        ShapeFault::TooFew { least: 1 } => {
+            (codes::WRONG_LENGTH, format!("there are no {items}"), "is it the right file?")
+        }
         ShapeFault::TooFew { least } => {
             (codes::WRONG_LENGTH, format!("there must be at least {least} {items}"), "is it the right file?")
         }

@@ -6,11 +6,11 @@ use serde::{Deserialize, Serialize};
 use super::number::Real;
 use super::plan::Bracket;
 
-/// One action of a plan. Ports are named by the module's own faces, as in `a:+z`.
+/// One action of a plan. Ports are named as in `a:+z` (of a cube its own faces) or `s:top`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "lowercase", deny_unknown_fields)]
 pub(crate) enum Action {
-    /// Two coinciding faces engage.
+    /// Two coinciding faces, or two ports that meet, engage.
     Attach {
         /// The two ports.
         ports: [String; 2],
@@ -68,6 +68,87 @@ pub(crate) enum Action {
         #[schemars(range(min = 0, max = 1))]
         phase: Option<Real>,
     },
+    /// A port rolls over the ball that it holds, by one step, with everything on one side of the connection.
+    Roll {
+        /// The port and the surface.
+        ports: [String; 2],
+        /// The module of the two whose side moves.
+        carried: String,
+        /// Where and how the port arrives.
+        to: SpotTarget,
+        /// Smallest margin of its transient states; null when unknown.
+        #[serde(default)]
+        margin: Option<Bracket>,
+        /// How far the action is done where that is, 0 to 1; null when unknown.
+        #[serde(default)]
+        #[schemars(range(min = 0, max = 1))]
+        phase: Option<Real>,
+    },
+    /// A joint turns by one step, with everything on one side of it.
+    Rotate {
+        /// The module whose joint it is.
+        module: String,
+        /// Name of the joint.
+        joint: String,
+        /// The position that it arrives in.
+        to_deg: Real,
+        /// The side that moves.
+        carried: Half,
+        /// Smallest margin of its transient states; null when unknown.
+        #[serde(default)]
+        margin: Option<Bracket>,
+        /// How far the action is done where that is, 0 to 1; null when unknown.
+        #[serde(default)]
+        #[schemars(range(min = 0, max = 1))]
+        phase: Option<Real>,
+    },
+}
+
+impl Action {
+    /// What it is worth, and where that is decided.
+    pub(crate) fn worth(&self) -> (Option<Bracket>, Option<Real>) {
+        match self {
+            Self::Attach { margin, phase, .. }
+            | Self::Detach { margin, phase, .. }
+            | Self::Slide { margin, phase, .. }
+            | Self::Pivot { margin, phase, .. }
+            | Self::Roll { margin, phase, .. }
+            | Self::Rotate { margin, phase, .. } => (*margin, *phase),
+        }
+    }
+}
+
+/// Where and how a port sits on a ball: turned from the frame of the ball's body by `spin` about z, then by
+/// `polar` about y, then by `azimuth` about z, all about the body's axes; z is then outwards, and x the port's x axis.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct SpotTarget {
+    /// Angle about the ball's z axis from its x axis.
+    pub(crate) azimuth_deg: Real,
+    /// Angle from the ball's z axis.
+    pub(crate) polar_deg: Real,
+    /// Angle about the direction outwards.
+    pub(crate) spin_deg: Real,
+}
+
+/// A side of a joint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum Half {
+    /// That of the joint's parent body.
+    Parent,
+    /// That of the joint's child body.
+    Child,
+}
+
+/// A joint of a module.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct JointOf {
+    /// The module.
+    pub(crate) module: String,
+    /// Name of the joint.
+    pub(crate) joint: String,
 }
 
 /// Where a lattice module ends.

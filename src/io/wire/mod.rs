@@ -19,7 +19,7 @@ mod rofi;
 mod structure;
 mod terrain;
 
-pub(super) use action::{Action, Axis, CellTarget};
+pub(super) use action::{Action, Axis, CellTarget, Half, JointOf, SpotTarget};
 pub(super) use catalogue::{
     BodyType, Catalogue, CatalogueFormat, Faces, Joint, ModuleType, Motion, PortType, Ports, Shape,
 };

@@ -3,6 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::action::JointOf;
 use super::number::Real;
 use super::plan::Bracket;
 
@@ -53,6 +54,9 @@ pub(crate) enum Impossible {
         /// The connection that fails first; null when none does.
         #[serde(default)]
         connection: Option<[String; 2]>,
+        /// The joint that fails first, where it is one.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        joint: Option<JointOf>,
     },
     /// Every sequence of actions was tried, or proved too weak.
     Exhausted {

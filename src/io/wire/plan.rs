@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::action::Action;
+use super::action::{Action, JointOf};
 use super::configuration::Configuration;
 use super::number::{Bound, NonNegative, Real};
 use super::outcome::{Impossible, Outcome, StoppedBy};
@@ -113,6 +113,9 @@ pub(crate) struct Bottleneck {
     /// The connection that the margin hangs on; null when none does.
     #[serde(default)]
     pub(crate) connection: Option<[String; 2]>,
+    /// The joint that the margin hangs on, where it is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) joint: Option<JointOf>,
 }
 
 /// A plan other than the best.

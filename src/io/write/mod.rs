@@ -7,7 +7,9 @@ mod configuration;
 mod connector;
 mod errors;
 mod gives_way;
+mod lattice_plan;
 mod linkage;
+mod linkage_plan;
 mod load_range;
 mod outcome;
 mod plan;
@@ -28,7 +30,7 @@ use super::diagnostics::Diagnostics;
 use super::document::NamedStructure;
 use super::form::Form;
 use super::load_range_report::LoadRangeReport;
-use super::plan_document::PlanDocument;
+use super::plan_document::{LinkagePlanDocument, PlanDocument};
 use super::{layout, wire};
 use crate::robot::linkage::Linkage;
 use crate::robot::{Catalogue, Configuration};
@@ -112,6 +114,15 @@ pub fn write_catalogue(catalogue: &Catalogue) -> Result<String, Unwritable> {
 /// action on a module that there is not; a pivot that no turn makes.
 pub fn write_plan(plan: &PlanDocument) -> Result<String, Unwritable> {
     text(&plan::wire(plan)?)
+}
+
+/// Writes a `plan/1` file of a linkage, as [`write_plan`] does one of lattice modules.
+///
+/// # Errors
+/// A number that is not finite, other than an unlimited limit or an unproved end; an
+/// action on a module, a port or a joint that there is not.
+pub fn write_linkage_plan(plan: &LinkagePlanDocument) -> Result<String, Unwritable> {
+    text(&plan::linkage_wire(plan)?)
 }
 
 /// Writes a `check/1` report on an assessed structure.

@@ -1,14 +1,15 @@
 //! Why a search found no plan, to `plan/1`.
 
-use super::super::document::LatticeProblem;
 use super::super::wire::{self, Real};
-use super::sequence::ports;
+use super::sequence::Family;
 use super::{Unwritable, bracket};
 use crate::reconfigure::{Impossible, Limit, Which};
-use crate::robot::Configuration;
 
-/// The reason; `problem` is what it speaks of.
-pub(super) fn impossible(reason: &Impossible, problem: &LatticeProblem) -> Result<wire::Impossible, Unwritable> {
+/// The reason.
+pub(super) fn impossible<F: Family>(
+    reason: &Impossible<F::Connection>,
+    family: &F,
+) -> Result<wire::Impossible, Unwritable> {
     Ok(match reason {
         Impossible::ModulesDiffer { module_type, start, goal } => wire::Impossible::ModulesDiffer {
             module_type: module_type.clone(),
@@ -17,12 +18,17 @@ pub(super) fn impossible(reason: &Impossible, problem: &LatticeProblem) -> Resul
         },
         Impossible::FixedModule { module } => wire::Impossible::FixedModule { module: module.clone() },
         Impossible::Disconnected(end) => wire::Impossible::Disconnected { which: which(*end) },
-        Impossible::Unstable { which: end, margin, required, connection } => wire::Impossible::Unstable {
-            which: which(*end),
-            margin: (margin.upper != f64::NEG_INFINITY).then(|| bracket(*margin)),
-            required_margin: Real(*required),
-            connection: connection.map(|connection| ports(configuration(*end, problem), connection)).transpose()?,
-        },
+        Impossible::Unstable { which: end, margin, required, connection } => {
+            let held = connection.map(|held| family.held(*end, held)).transpose()?;
+            let (connection, joint) = held.unwrap_or_default();
+            wire::Impossible::Unstable {
+                which: which(*end),
+                margin: (margin.upper != f64::NEG_INFINITY).then(|| bracket(*margin)),
+                required_margin: Real(*required),
+                connection,
+                joint,
+            }
+        }
         Impossible::Exhausted { required } => {
             wire::Impossible::Exhausted { required_margin: (*required != f64::NEG_INFINITY).then_some(Real(*required)) }
         }
@@ -44,12 +50,5 @@ fn which(which: Which) -> wire::Which {
     match which {
         Which::Start => wire::Which::Start,
         Which::Goal => wire::Which::Goal,
-    }
-}
-
-fn configuration(which: Which, problem: &LatticeProblem) -> &Configuration {
-    match which {
-        Which::Start => &problem.start,
-        Which::Goal => &problem.goal.configuration,
     }
 }

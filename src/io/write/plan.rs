@@ -1,27 +1,41 @@
 //! A plan with its problem to `plan/1`.
 
-use super::super::plan_document::PlanDocument;
+use super::super::plan_document::{LinkagePlanDocument, PlanDocument};
 use super::super::wire::{self, NonNegative, Real};
-use super::sequence::Writer;
-use super::{Unwritable, configuration, outcome};
-use crate::reconfigure::{Objective, Outcome, Proof, Statistics};
+use super::lattice_plan::LatticePlans;
+use super::linkage_plan::LinkagePlans;
+use super::sequence::{Family, sequence};
+use super::{Unwritable, configuration, linkage, outcome};
+use crate::reconfigure::{Objective, Outcome, Proof, Report, Statistics};
 
+/// A plan for lattice modules.
 pub(super) fn wire(document: &PlanDocument) -> Result<wire::Plan, Unwritable> {
-    let (problem, report) = (&document.problem, &document.report);
-    let writer = Writer { start: &problem.start };
-    let given = |plan: usize| {
-        move |action: usize| {
-            document.contradictions_of(plan).find(|c| c.action == action).map(|contradiction| contradiction.given)
-        }
-    };
-    let best = report.plan.as_ref().map(|plan| writer.sequence(plan, given(0))).transpose()?;
+    let problem = &document.problem;
+    let ends = [configuration::start(&problem.start), configuration::goal(&problem.goal)];
+    written(&document.report, &mut LatticePlans::new(document), ends)
+}
+
+/// A plan for a linkage.
+pub(super) fn linkage_wire(document: &LinkagePlanDocument) -> Result<wire::Plan, Unwritable> {
+    let problem = &document.problem;
+    let ends = [linkage::start(&problem.start), linkage::goal(&problem.goal)];
+    written(&document.report, &mut LinkagePlans { problem }, ends)
+}
+
+fn written<F: Family>(
+    report: &Report<F::Action, F::Connection>,
+    family: &mut F,
+    [start, goal]: [wire::Configuration; 2],
+) -> Result<wire::Plan, Unwritable> {
+    let best = report.plan.as_ref().map(|plan| sequence(family, 0, plan)).transpose()?;
     let (margin, moves, bottleneck, actions) = match best {
         Some(best) => (best.margin, Some(best.moves), best.bottleneck, Some(best.actions)),
         None => (None, None, None, None),
     };
     let offset = usize::from(report.plan.is_some());
     let alternatives = report.alternatives.iter().enumerate();
-    let alternatives = alternatives.map(|(index, plan)| writer.sequence(plan, given(offset + index)));
+    let alternatives = alternatives.map(|(index, plan)| sequence(family, offset + index, plan));
+    let alternatives = alternatives.collect::<Result<_, _>>()?;
     let (impossible, stopped_by) = match &report.outcome {
         Outcome::Solved => (None, None),
         Outcome::Impossible(reason) => (Some(reason), None),
@@ -35,7 +49,7 @@ pub(super) fn wire(document: &PlanDocument) -> Result<wire::Plan, Unwritable> {
             Outcome::OutOfBudget(_) => wire::Outcome::OutOfBudget,
         },
         impossible_because: impossible.map(ToString::to_string),
-        impossible: impossible.map(|reason| outcome::impossible(reason, problem)).transpose()?,
+        impossible: impossible.map(|reason| outcome::impossible(reason, family)).transpose()?,
         stopped_by,
         alternatives_cut_by: report.alternatives_cut_by.map(outcome::limit),
         objective: match report.objective {
@@ -48,9 +62,9 @@ pub(super) fn wire(document: &PlanDocument) -> Result<wire::Plan, Unwritable> {
         proof: proof(&report.proof),
         bottleneck,
         actions,
-        alternatives: alternatives.collect::<Result<_, _>>()?,
-        start: configuration::start(&problem.start),
-        goal: configuration::goal(&problem.goal),
+        alternatives,
+        start,
+        goal,
         statistics: statistics(&report.statistics),
     })
 }

@@ -4,6 +4,7 @@
 //! displacement (`places`, `arrangement`); moves turn one side of a joint or of a connection on a ball, with every
 //! way to split the robot for it (`moves`, `sides`); `clearance` and `oracle` judge them, `saturated` is the
 //! search space, `compose` leads back to explicit actions, and `replay` checks those from the definitions.
+//! `motion_range` maps where one connection or joint may stand.
 
 mod action;
 mod arrangement;
@@ -15,6 +16,8 @@ mod compose;
 mod contacts;
 mod domain;
 mod goal;
+mod joined;
+mod motion_range;
 mod moves;
 mod oracle;
 mod places;
@@ -29,4 +32,5 @@ mod state;
 mod tests;
 
 pub use action::{Action, Half};
+pub use motion_range::{MotionRange, NotABridge, Stand, Turning, motion_range};
 pub use solve::solve;

@@ -252,7 +252,8 @@ impl Search<'_> {
                 m == n
                     && between.translation.vector.norm() <= self.tolerance
                     && (z - Vec3::z()).norm() <= MEETING
-                    && is_multiple(angle.to_degrees(), 360.0 / f64::from((*m).max(1)))
+                    // A port that engages with surfaces only has no angles.
+                    && (*m == 0 || is_multiple(angle.to_degrees(), 360.0 / f64::from(*m)))
                     && port.connector.is_none_or(|connector| self.allows_turn(connector, angle))
             }
             (PortPlace::Surface, PortPlace::Surface) => {

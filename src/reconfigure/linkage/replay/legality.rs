@@ -9,6 +9,7 @@ use crate::spatial::{Pose, Vec3};
 
 use super::super::action::{Action, Half};
 use super::super::assembly::BodyOf;
+use super::super::joined::Joined;
 use super::Fault;
 
 /// A legal action: the state after it, and the way of what moves.
@@ -179,65 +180,6 @@ fn carry(
     let Motion::Rotation { angle, .. } = motion else { unreachable!("a linkage turns") };
     let steps = (angle.abs().to_degrees() / CHECKED_DEGREES).ceil().max(1.0) as u32;
     Ok(Transition { after, path: Some(Path { carried, motion, steps }) })
-}
-
-/// The bodies of a linkage, and what joins them.
-pub(super) struct Joined {
-    first: Vec<usize>,
-    pub bodies: Vec<BodyOf>,
-}
-
-impl Joined {
-    pub fn new(linkage: &Linkage) -> Self {
-        let mut first = Vec::with_capacity(linkage.modules.len());
-        let mut bodies = Vec::new();
-        for module in 0..linkage.modules.len() {
-            first.push(bodies.len());
-            bodies.extend((0..linkage.module_type(module).bodies.len()).map(|body| BodyOf { module, body }));
-        }
-        Self { first, bodies }
-    }
-
-    pub fn index(&self, body: BodyOf) -> usize {
-        self.first[body.module] + body.body
-    }
-
-    /// What holds together by joints and connections.
-    pub fn whole(&self, linkage: &Linkage) -> UnionFind<usize> {
-        self.sides(linkage, |_, _| true, |_| true)
-    }
-
-    fn without_connection(&self, linkage: &Linkage, left_out: Connection) -> UnionFind<usize> {
-        self.sides(linkage, |_, _| true, |connection| connection != left_out)
-    }
-
-    fn without_joint(&self, linkage: &Linkage, module: usize, joint: usize) -> UnionFind<usize> {
-        self.sides(linkage, |m, j| (m, j) != (module, joint), |_| true)
-    }
-
-    fn sides(
-        &self,
-        linkage: &Linkage,
-        joint_holds: impl Fn(usize, usize) -> bool,
-        connection_holds: impl Fn(Connection) -> bool,
-    ) -> UnionFind<usize> {
-        let mut sets = UnionFind::new(self.bodies.len());
-        for module in 0..linkage.modules.len() {
-            for (index, joint) in linkage.module_type(module).joints.iter().enumerate() {
-                if joint_holds(module, index) {
-                    sets.union(self.first[module] + joint.parent, self.first[module] + joint.child);
-                }
-            }
-        }
-        for &connection in linkage.connections.iter().filter(|&&connection| connection_holds(connection)) {
-            let [a, b] = connection.ports.map(|port| {
-                let body = linkage.module_type(port.module).ports[port.port].body;
-                self.index(BodyOf { module: port.module, body })
-            });
-            sets.union(a, b);
-        }
-        sets
-    }
 }
 
 /// Poses of all bodies at a phase of a way.

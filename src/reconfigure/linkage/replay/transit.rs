@@ -8,7 +8,8 @@ use crate::spatial::Pose;
 use crate::statics::{Question, assess};
 
 use super::super::assembly::{Assembler, Assembly, BodyOf, Held, Touched, Transient};
-use super::legality::{Joined, Path, poses_at};
+use super::super::joined::Joined;
+use super::legality::{Path, poses_at};
 use super::{Fault, Found, Judge, Refusal, Sample, claims, phases};
 
 /// Checks states and collects what is wrong.
