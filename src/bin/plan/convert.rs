@@ -60,7 +60,8 @@ pub fn run(arguments: &ConvertArguments) -> io::Result<Exit> {
 /// Leaves out what surrounds a robot and what is asked of it. Pads are fixed in the platform's formats.
 fn on_its_own(linkage: &mut Linkage) {
     linkage.gravity = Vec3::zeros();
-    linkage.environment = Environment::default();
+    let module_friction = linkage.environment.module_friction;
+    linkage.environment = Environment { module_friction, ..Environment::default() };
     linkage.loads = Vec::new();
     linkage.require = Requirement::default();
     for module in &mut linkage.modules {

@@ -13,7 +13,7 @@ use crate::spatial::{Pose, Rotation, Vec3};
 
 /// Friction coefficient between modules that touch without being connected,
 /// where a file says nothing. An estimate: dry plastic on plastic.
-const MODULE_FRICTION: f64 = 0.4;
+pub(super) const MODULE_FRICTION: f64 = 0.4;
 
 /// The environment at `place`; empty space when there is none.
 pub(super) fn environment(

@@ -112,7 +112,7 @@ impl Scope<'_, '_> {
         if found.is_none() {
             let id = &self.modules[module].id;
             let docks = if is_universal { format!("{}, or ", suggest::listed(&DOCKS)) } else { String::new() };
-            let hint = format!("{docks}a number from 0 to {}", count - 1);
+            let hint = format!("{docks}a number from 0 to {}", count.saturating_sub(1));
             findings.add(place, codes::UNKNOWN_VALUE, format!("module {id} has no {shown}"), hint);
         }
         found

@@ -17,6 +17,7 @@ use std::sync::Arc;
 use super::super::findings::{Document, Findings};
 use super::super::form::Form;
 use super::configuration::Surroundings;
+use super::environment::MODULE_FRICTION;
 use super::matching;
 use crate::robot::linkage::{Goal, Linkage};
 use crate::robot::{Environment, Matching, Requirement};
@@ -40,7 +41,7 @@ pub(super) fn start(world: &World<'_>, other: Option<&World<'_>>, findings: &mut
     other.into_iter().for_each(|other| needs.add(other));
     let surroundings = Surroundings {
         gravity: Vec3::zeros(),
-        environment: Environment::default(),
+        environment: Environment { module_friction: MODULE_FRICTION, ..Environment::default() },
         loads: Vec::new(),
         require: Requirement::default(),
     };
