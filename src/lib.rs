@@ -159,7 +159,7 @@
 //! counted on for friction that a real sequence of loading would not raise (see
 //! [`statics::contact_self_stress`]). Moves
 //! are checked on samples (at most 15 degrees or an eighth of a cell apart, refined
-//! around the worst), not between them. Only cubes in a lattice are planned for.
+//! around the worst), not between them. One module, joint or connection moves at a time.
 
 pub mod certificate;
 pub mod geometry;

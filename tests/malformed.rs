@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use libtest_mimic::{Arguments, Failed, Trial};
 use steadfast::io::{
     Diagnostics, SourceFile, no_references, read_catalogue, read_certificate, read_checkable, read_configuration,
-    read_plan, read_problem, read_structure,
+    read_linkage, read_problem, read_structure, read_verifiable,
 };
 
 const KINDS: [&str; 8] =
@@ -43,13 +43,23 @@ fn main() {
             ),
         )
     }));
+    for path in problems::texts_and_json_files("malformed/rofi").expect("the directory is there") {
+        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        trials.push(Trial::test(format!("rofi/{name}"), move || check("rofi", &path)));
+    }
+    trials
+        .push(Trial::test("ten megabytes of text", || bounded("rofi", format!("C\n{}", "M 0 0\n".repeat(1_500_000)))));
+    trials.push(Trial::test("a pad of a million docks, joined nowhere", || {
+        let world = r#"{"modules": [{"id": 1, "type": "pad", "width": 1000, "height": 1001}], "moduleJoints": []}"#;
+        bounded("rofi", world.to_string())
+    }));
     trials.push(Trial::test("all modules in each other", || {
         let module = |i| format!(r#"{{"id":"{i}","type":"node","position_m":[0,0,{}]}}"#, f64::from(i) * 1e-6);
         let modules = (0..20_000).map(module).collect::<Vec<_>>().join(",");
         bounded(
             "configuration",
             format!(
-                r#"{{"format":"configuration/1","catalogue":"freesn","gravity_m_s2":[0,0,0],"connections":"touching",
+                r#"{{"format":"configuration/1","catalogue":"freesn","gravity_m_s2":[0,0,0],"connections":[],
                 "require":{{"connected":false}},"modules":[{modules}]}}"#
             ),
         )
@@ -63,7 +73,8 @@ fn read(kind: &str, file: &SourceFile) -> Result<(), Diagnostics> {
         "catalogue" => read_catalogue(file).map(drop),
         "configuration" => read_checkable(file, &references).map(drop),
         "lattice" => read_configuration(file, &references).map(drop),
-        "plan" => read_plan(file).map(drop),
+        "rofi" => read_linkage(file, &no_references).map(drop),
+        "plan" => read_verifiable(file).map(drop),
         "certificate" => read_certificate(file).map(drop),
         _ => {
             let text = match kind {

@@ -2,10 +2,11 @@
 //! is accepted must be written and read back equal.
 
 use steadfast::io::{
-    SourceFile, no_references, read_catalogue, read_certificate, read_configuration, read_linkage, read_plan,
-    read_problem, read_structure, write_catalogue, write_certificate, write_configuration, write_linkage, write_plan,
-    write_structure,
+    Form, SourceFile, no_references, read_catalogue, read_certificate, read_configuration, read_linkage,
+    read_linkage_plan, read_plan, read_problem, read_structure, write_catalogue, write_certificate,
+    write_configuration, write_linkage, write_linkage_plan, write_plan, write_rofi, write_structure,
 };
+use steadfast::robot::linkage::Linkage;
 
 /// Mutations of each kind of file.
 const ROUNDS: u64 = 20_000;
@@ -175,6 +176,50 @@ fn plans() {
         assert_eq!(read_plan(&SourceFile::new("again", text)), Ok(plan));
         Ok(())
     });
+}
+
+/// Whatever is accepted is written in the same format and read back as the same robot.
+fn damaged_rofi(name: &str, seed: u64, form: Form) {
+    damage(name, seed, |file| {
+        let linkage = read_linkage(file, &no_references).map_err(|e| e.to_string())?;
+        let text = write_rofi(&linkage, form).unwrap_or_else(|why| panic!("{why:?}"));
+        let again = read_linkage(&SourceFile::new("again", text), &no_references).unwrap();
+        let joints = |linkage: &Linkage| -> Vec<_> { linkage.modules.iter().map(|m| m.joints.clone()).collect() };
+        assert_eq!(again.modules.len(), linkage.modules.len());
+        if form != Form::RofiVoxels {
+            // Voxels tell neither a module's halves apart nor its X docks.
+            assert_eq!(joints(&again), joints(&linkage));
+            assert_eq!(again.connections, linkage.connections);
+        }
+        Ok(())
+    });
+}
+
+#[test]
+fn rofi_worlds() {
+    damaged_rofi("rofi_world.json", 0x2545_f491, Form::RofiWorld);
+}
+
+#[test]
+fn rofi_texts() {
+    damaged_rofi("rofi.rofi", 0x9e6c_63d0, Form::RofiText);
+}
+
+#[test]
+fn rofi_voxels() {
+    damaged_rofi("rofi_voxels.json", 0x7f4a_7c15, Form::RofiVoxels);
+}
+
+#[test]
+fn plans_of_linkages() {
+    for (name, seed) in [("linkage_plan.json", 0x1656_67b1), ("joint_plan.json", 0xe654_6b64)] {
+        damage(name, seed, |file| {
+            let plan = read_linkage_plan(file).map_err(|e| e.to_string())?;
+            let text = write_linkage_plan(&plan).unwrap();
+            assert_eq!(read_linkage_plan(&SourceFile::new("again", text)), Ok(plan));
+            Ok(())
+        });
+    }
 }
 
 #[test]

@@ -111,6 +111,18 @@ pub fn json_files(directory: &str) -> io::Result<Vec<PathBuf>> {
     Ok(files)
 }
 
+/// The files in a directory of the library other than expected outputs, by name.
+///
+/// # Errors
+/// The directory cannot be read.
+pub fn texts_and_json_files(directory: &str) -> io::Result<Vec<PathBuf>> {
+    let entries = std::fs::read_dir(root().join(directory))?;
+    let paths = entries.map(|entry| entry.map(|entry| entry.path())).collect::<io::Result<Vec<_>>>()?;
+    let mut files: Vec<_> = paths.into_iter().filter(|path| path.extension().is_none_or(|e| e != "stderr")).collect();
+    files.sort();
+    Ok(files)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

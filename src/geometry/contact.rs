@@ -53,9 +53,10 @@ fn is_only_normal(sides: [(&Figure, &[Point2]); 2], middle: &Point2, tolerance: 
         return true;
     }
     let in_face = |feature: &[Point2]| feature.len() >= 3 && depth_within(middle, feature) > tolerance;
-    let in_edge =
-        |feature: &[Point2]| feature.len() == 2 && feature.iter().all(|end| (end - middle).norm() > tolerance);
-    let in_side = |(figure, feature): (&Figure, &[Point2])| figure.is_round() && in_edge(feature);
+    let in_side = |(figure, feature): (&Figure, &[Point2])| {
+        figure.is_round() && feature.len() == 2 && feature.iter().all(|end| (end - middle).norm() > tolerance)
+    };
+    let in_edge = |feature: &[Point2]| is_well_inside(middle, feature, tolerance);
     let on_rim = |(figure, feature): (&Figure, &[Point2])| figure.is_round() && feature.len() == 1;
     in_face(own)
         || in_face(theirs)
@@ -78,6 +79,14 @@ pub(super) fn half_space_contact(solid: &Solid, normal: &Vec3, level: f64, toler
     let near = figure.feature(&-normal, level + tolerance - lowest);
     let flat = convex_hull(near.iter().map(|p| plane.flat(p)).collect(), tolerance);
     Some(ContactPatch { normal: *normal, points: flat.iter().map(|p| plane.at(p, level)).collect() })
+}
+
+/// Whether a rim that crosses a segment at a point does so away from its ends: even where it runs almost along the
+/// segment, it is beyond the tolerance there.
+pub(super) fn is_well_inside(point: &Point2, segment: &[Point2], tolerance: f64) -> bool {
+    let &[from, to] = segment else { return false };
+    let room = (2.0 * tolerance * (to - from).norm()).sqrt();
+    (from - point).norm() > room && (to - point).norm() > room
 }
 
 /// The one direction along which two solids touch; `None` when they do not, or

@@ -23,15 +23,10 @@ pub fn environment_problems(configuration: &Configuration) -> Vec<Problem> {
         let shape = configuration.module_type(module).body().shape.clone();
         let solid = Solid::new(shape, configuration.pose(module));
         let mut add = |fault| problems.push(Problem::new(Part::Module(module), "placement", fault));
-        let mut in_obstacle = false;
         for what in surroundings.overlaps(&solid, SKIN * solid.size()) {
             match what {
                 Surrounding::Ground => add(Fault::BelowGround),
-                Surrounding::Obstacle(obstacle) if !in_obstacle => {
-                    in_obstacle = true;
-                    add(Fault::InsideObstacle { obstacle });
-                }
-                Surrounding::Obstacle(_) => {}
+                Surrounding::Obstacle(obstacle) => add(Fault::InsideObstacle { obstacle }),
             }
         }
     }

@@ -9,7 +9,7 @@
 
 use crate::spatial::Vec3;
 
-use super::contact::{ContactPatch, Plane, intersection, wider};
+use super::contact::{ContactPatch, Plane, intersection, is_well_inside, wider};
 use super::figure::Figure;
 use super::polygon::{Point2, convex_hull, depth_within, distance_to_segment};
 use super::separation::{Separation, Separations, of_figures};
@@ -172,7 +172,8 @@ fn is_across_ridge(
     let inside = |segment: &[Point2]| segment.len() == 2 && segment.iter().all(|end| (end - middle).norm() > tolerance);
     let is_smooth = touching.figure.ball().is_some();
     // A rim crosses an edge in a point of its own.
-    let crosses = inside(own) || (touching.figure.is_round() && own.len() == 1 && inside(theirs));
+    let crosses =
+        inside(own) || (touching.figure.is_round() && own.len() == 1 && is_well_inside(middle, theirs, tolerance));
     if !(is_smooth || crosses) {
         return false;
     }

@@ -96,21 +96,25 @@ impl Surroundings {
         found
     }
 
-    /// The parts that a solid penetrates deeper than `skin` in m or that it is wholly within, in order.
+    /// The parts that a solid penetrates deeper than `skin` in m or that it is wholly within: the ground, and
+    /// the first of the obstacles.
     pub fn overlaps(&self, solid: &Solid, skin: f64) -> Vec<Surrounding> {
         let figure = Figure::new(solid);
         let planes = self.half_spaces.iter().filter(|(_, half_space)| {
             let above = -figure.reach(&-half_space.normal) >= half_space.level - skin;
             !above
         });
-        let solids = self.solids.near(solid, 0.0).into_iter().filter(|(_, other)| overlap(solid, other, skin));
-        let surfaces = self.surfaces.iter().filter(|(_, surface)| surface.overlaps(solid, skin));
+        let near = self.solids.near(solid, 0.0);
+        let first_solid = near.into_iter().find(|(_, other)| overlap(solid, other, skin));
+        let first_surface = self.surfaces.iter().find(|(_, surface)| surface.overlaps(solid, skin));
         let mut found: Vec<_> = planes
             .map(|(what, _)| *what)
-            .chain(solids.map(|(index, _)| Surrounding::Obstacle(self.solid_obstacles[index])))
-            .chain(surfaces.map(|(index, _)| Surrounding::Obstacle(*index)))
+            .chain(first_solid.map(|(index, _)| Surrounding::Obstacle(self.solid_obstacles[index])))
+            .chain(first_surface.map(|(index, _)| Surrounding::Obstacle(*index)))
             .collect();
         found.sort_unstable();
+        // Of the obstacles, which come after the ground, the first.
+        found.dedup_by_key(|what| *what == Surrounding::Ground);
         found
     }
 

@@ -71,11 +71,9 @@ fn the_body(wire: &wire::ModuleType, place: &Place<'_>, findings: &mut Findings)
         ("shape_position_m", only.shape_position_m.is_some()),
         ("shape_rotation_xyzw", only.shape_rotation_xyzw.is_some()),
     ];
-    for (key, present) in off_centre {
-        if present {
-            let hint = "the solid is the cell: leave it out";
-            refuse(&place.key(key), "the solid of a lattice module is centred on its frame", hint, findings);
-        }
+    for (key, _) in off_centre.iter().filter(|(_, present)| *present) {
+        let hint = "the solid is the cell: leave it out";
+        refuse(&place.key(key), "the solid of a lattice module is centred on its frame", hint, findings);
     }
-    body(only, &place, findings)
+    body(only, &place, findings).filter(|_| !off_centre.iter().any(|(_, present)| *present))
 }

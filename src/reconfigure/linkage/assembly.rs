@@ -123,7 +123,12 @@ impl<'a> Assembler<'a> {
             motors.push(connectors.len());
             connectors.extend((0..module_type.joints.len()).map(|joint| motor(module_type, joint)));
         }
-        let size = (0..linkage.modules.len()).map(|m| linkage.module_type(m).size()).fold(0.0, f64::max);
+        // An object may have no ports to measure it by.
+        let extent = |kind: &ModuleType| {
+            let bodies = kind.bodies.iter().map(|body| Solid::new(body.shape.clone(), body.shape_pose).size());
+            bodies.fold(kind.size(), f64::max)
+        };
+        let size = (0..linkage.modules.len()).map(|m| extent(linkage.module_type(m))).fold(0.0, f64::max);
         let surroundings = Surroundings::new(&linkage.environment);
         Self { linkage, first, bodies, connectors, motors, surroundings, tolerance: CONTACT * size }
     }

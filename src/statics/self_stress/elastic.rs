@@ -22,16 +22,23 @@ const ROUNDED: f64 = 1e-6;
 /// Share of the largest force from which on a contact presses.
 const PRESSES: f64 = 1e-6;
 
-/// How many times the largest elastic motion of a block a contact that presses may slide, times its friction.
+/// How many times its own approach a contact that presses has to slide, times its friction, and for how many rounds
+/// in a row its gap has to grow on hardly less than before, before nothing is taken to stop it.
 const FAR: f64 = 100.0;
+const STEADILY: usize = 4;
+const HARDLY_LESS: f64 = 0.9;
+const GROWS: f64 = 1e-2;
 
 /// Steadiness of gaps' growth (the share of the last growth that is repeated) from which on the
 /// next step is longer, and by how much.
 const STEADY: f64 = 0.6;
 const LONGER: f64 = 2.0;
 
-/// How the solver is asked.
-const ATTEMPT: Attempt = Attempt { tolerance: 1e-9, inset: 0.0, regularization: 1e-8 };
+/// How the solver is asked, in turn.
+const ATTEMPTS: [Attempt; 2] = [
+    Attempt { tolerance: 1e-9, inset: 0.0, regularization: 1e-8 },
+    Attempt { tolerance: 1e-7, inset: 0.0, regularization: 1e-8 },
+];
 
 /// Lets a block settle elastically from a state without stress.
 pub(super) fn settle(structure: &Structure, block: &Block, loads: &[BodyLoad]) -> SelfStress {
@@ -39,16 +46,23 @@ pub(super) fn settle(structure: &Structure, block: &Block, loads: &[BodyLoad]) -
     let springs = Springs::new(&program, block);
     let mut gaps = vec![0.0; program.groups.len()];
     let (mut before, mut stride): (Option<Vec<f64>>, f64) = (None, 1.0);
+    let mut steadily = vec![0; program.groups.len()];
     for _ in 0..ROUNDS {
-        let Some(settled) = springs.settle(&gaps) else { return SelfStress::Undecided };
+        let settled = ATTEMPTS.iter().find_map(|attempt| springs.settle(&gaps, attempt));
+        let Some(settled) = settled else { return SelfStress::Undecided };
         let growth: Vec<f64> = settled.slips.iter().zip(&gaps).map(|(slip, gap)| slip - gap).collect();
         let stays = |(growth, pressure): (&f64, &f64)| growth.abs() <= STAYS * pressure + ROUNDED * settled.largest;
         if growth.iter().zip(&settled.pressures).all(stays) {
             return SelfStress::NotNeeded;
         }
-        let far = |(gap, pressure): (&f64, &f64)| *pressure > PRESSES * settled.largest && *gap > FAR * settled.largest;
-        if gaps.iter().zip(&settled.pressures).any(far) {
-            return SelfStress::ReliedOn;
+        for (index, steady) in steadily.iter_mut().enumerate() {
+            let (growth, pressure) = (growth[index], settled.pressures[index]);
+            let less = before.as_ref().is_none_or(|before| growth < HARDLY_LESS * before[index]);
+            let grows = pressure > PRESSES * settled.largest && growth > GROWS * pressure;
+            *steady = if grows && !less { *steady + 1 } else { 0 };
+            if *steady >= STEADILY && gaps[index] > FAR * pressure {
+                return SelfStress::ReliedOn;
+            }
         }
         let steady = before.as_ref().is_some_and(|before| {
             let along = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(x, y)| x * y).sum() };
@@ -133,7 +147,7 @@ impl<'p> Springs<'p> {
 
     /// The state of least energy with a gap at each contact that it takes nothing to open and
     /// work to press across. `None` when the solver finds none.
-    fn settle(&self, gaps: &[f64]) -> Option<Settled> {
+    fn settle(&self, gaps: &[f64], attempt: &Attempt) -> Option<Settled> {
         let mut linear = vec![0.0; self.program.variables];
         for (group, gap) in self.program.groups.iter().zip(gaps) {
             linear[group.first] = gap / self.motion(group);
@@ -143,7 +157,7 @@ impl<'p> Springs<'p> {
         let size = self.compliance.len();
         let energy = CscMatrix::new(size, size, starts, diagonal, self.compliance.clone());
         let mut solver =
-            DefaultSolver::new(&energy, &linear, &self.matrix, &self.rhs, &self.cones, settings(&ATTEMPT)?).ok()?;
+            DefaultSolver::new(&energy, &linear, &self.matrix, &self.rhs, &self.cones, settings(attempt)?).ok()?;
         solver.solve();
         match solver.solution.status {
             SolverStatus::Solved | SolverStatus::AlmostSolved => {}

@@ -25,8 +25,8 @@
 //!
 //! until gaps stay (De Saxce and Feng 1998; the iteration is that of Cadoux 2009 and of
 //! Acary, Cadoux, Lemarechal and Malick 2011). Where a wedge of taper `theta` holds, gaps converge like powers of
-//! `mu / (mu + tan theta)`; where nothing produces the squeeze they grow for ever. Sliding by more than a hundred
-//! times the largest elastic motion counts as that: a wedge of a third of a degree.
+//! `mu / (mu + tan theta)`; where nothing produces the squeeze they grow for ever. A contact that slides by more than a
+//! hundred times its own approach, and goes on as steadily as it began, counts as that: a wedge of a third of a degree.
 //!
 //! This is a statement on equilibrium of forces, not a proof of instability: walls that are really
 //! pressed together do hold a block. Nor does "not relied on" prove that the real contacts, of

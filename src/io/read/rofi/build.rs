@@ -11,7 +11,7 @@ use super::super::faults;
 use super::world::{Anchor, Joint, Joints, Kind, Module, World};
 use crate::geometry::linkage_problems;
 use crate::robot::linkage::{self, Connection, Linkage, Port, mated};
-use crate::robot::{Catalogue, ModuleType, Part, PortPlace, rofi};
+use crate::robot::{Catalogue, Fault, ModuleType, Part, PortPlace, rofi};
 use crate::spatial::Pose;
 
 /// Steps of joints that are tried, in degrees: divisors of 90.
@@ -90,6 +90,8 @@ pub(in super::super) fn build(
             _ => &world.whole,
         };
         if let Some((code, message, hint)) = faults::describe(problem, &ids) {
+            // These files have no way to say that a robot may be in parts.
+            let hint = if problem.fault == Fault::Disconnected { "join it to the others" } else { hint };
             mark.report(findings, code, message, hint);
         }
     }
