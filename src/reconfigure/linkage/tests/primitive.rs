@@ -15,7 +15,7 @@ use crate::robot::linkage::{Connection, Linkage};
 use crate::robot::rofi::CELL;
 use crate::spatial::Pose;
 
-use super::{chain, goal, module, robot, standing};
+use super::{goal, module, robot, standing, string};
 
 /// An arrangement and the engaged connections of its modules, sorted.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -129,9 +129,9 @@ fn agree(start: &Linkage, end: &Linkage) {
 }
 
 #[test]
-fn single_actions_do_no_better_with_two_universal_modules() {
-    let robot = |joints: &[[i32; 3]]| standing(chain(joints, &[0]), None);
-    agree(&robot(&[[0, 0, 0], [0, 0, 0]]), &robot(&[[0, 1, 0], [0, 0, 0]]));
+fn single_actions_do_no_better_with_a_strut() {
+    let robot = |azimuth| standing(string(&[[azimuth, 90, 0]]), None);
+    agree(&robot(0), &robot(90));
 }
 
 #[test]
