@@ -58,7 +58,10 @@ impl<'a> Run<'a> {
             return;
         }
         let (step, during) = self.step(&view, action);
-        self.engage(&view.kept(&step));
+        let kept = view.kept(&step);
+        self.engage(&kept);
+        let view = self.domain.problem.view(&self.domain.problem.described(self.state.linkage()), kept);
+        let step = view.once_released(&step, self.domain.rules()).expect("releasing what is torn leaves the move");
         self.state.take(&view, &step);
         self.note(step.action, during);
     }

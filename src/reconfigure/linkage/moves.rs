@@ -16,6 +16,10 @@ use super::places::Place;
 use super::problem::Class;
 use super::sides::Graph;
 
+/// One less the cosine of the angle up to which two axes are one: far above how nearly loops close, and far
+/// below the angle between axes of different moves.
+const SAME_LINE: f64 = 1e-6;
+
 /// A robot in some description: modules, and the connections between them that are engaged.
 #[derive(Clone, Debug)]
 pub struct View {
@@ -74,6 +78,24 @@ impl View {
         steps
     }
 
+    /// A move of the robot as it was before connections between its sides were released, now that they are.
+    ///
+    /// What turns is now all that the one side's place follows from, and where a loop was closed only nearly, it is
+    /// not quite where it was measured to be before.
+    pub fn once_released(&self, step: &Step, rules: Rules) -> Option<Step> {
+        let turning = |action: &Action| match *action {
+            Action::Roll { connection, carried, .. } => (Some(connection), carried, None),
+            Action::Rotate { module, joint, carried, .. } => (None, module, Some((joint, carried))),
+            Action::Attach(connection) | Action::Detach(connection) => (Some(connection), usize::MAX, None),
+        };
+        let is_same = |other: &Step| {
+            turning(&other.action) == turning(&step.action)
+                && other.carried == step.carried
+                && are_near(&other.motion, &step.motion)
+        };
+        self.steps(rules).into_iter().find(is_same)
+    }
+
     /// Whether a body moves.
     pub fn moves(&self, step: &Step, module: usize, body: usize) -> bool {
         match step.action {
@@ -126,7 +148,7 @@ impl View {
         let graph = Graph::new(count + 1, self.connections.iter().map(|connection| connection.ports.map(vertex)));
         let parent = self.modules[module].bodies[kind.parent];
         let centre = (parent * Point::from(kind.origin)).coords;
-        let axis = parent.rotation * kind.axis;
+        let axis = turned(&parent, &kind.axis);
         let targets = targets(kind, self.modules[module].joints[joint]);
         for (carried, side) in graph.both_sides([count, module], rules.connected) {
             let half = if carried == 0 { Half::Child } else { Half::Parent };
@@ -165,7 +187,7 @@ impl View {
                 let degrees = if moving == 0 { turn.degrees } else { -turn.degrees };
                 let motion = Motion::Rotation {
                     centre: centre.translation.vector,
-                    axis: ball_pose.rotation * turn.axis,
+                    axis: turned(&ball_pose, &turn.axis),
                     angle: degrees.to_radians(),
                 };
                 let action = Action::Roll { connection, to: turn.to, carried: ends[moving] };
@@ -181,6 +203,22 @@ impl View {
         if !is_other && !(0..self.modules.len()).any(is_held) {
             steps.push(step);
         }
+    }
+}
+
+/// A direction in a frame, in W: a unit vector whatever the frame's rotation has lost to rounding, since what it has
+/// lost would come back twice in every pose that the turn makes.
+fn turned(frame: &Pose, axis: &Unit<Vec3>) -> Unit<Vec3> {
+    Unit::new_normalize(frame.rotation * axis.into_inner())
+}
+
+/// Whether two turns are by the same angle about nearly the same line.
+fn are_near(a: &Motion, b: &Motion) -> bool {
+    match (a, b) {
+        (Motion::Rotation { axis: u, angle: a, .. }, Motion::Rotation { axis: v, angle: b, .. }) => {
+            a == b && u.dot(v) > 1.0 - SAME_LINE
+        }
+        _ => false,
     }
 }
 

@@ -5,6 +5,7 @@ use proptest::sample::Index;
 
 use crate::reconfigure::linkage::action::{Action, Half};
 use crate::reconfigure::linkage::arrangement::{Arrangements, Frame};
+use crate::reconfigure::linkage::clearance::Clearance;
 use crate::reconfigure::linkage::moves::{Rules, Step, View};
 use crate::reconfigure::linkage::problem::Problem;
 use crate::reconfigure::linkage::state::State;
@@ -42,6 +43,8 @@ fn take(problem: &Problem, state: &mut State, step: Step) -> Taken {
     for &connection in &released {
         state.detach(connection);
     }
+    let before = problem.view(&problem.described(state.linkage()), kept.clone());
+    let step = before.once_released(&step, RULES).expect("releasing what is torn leaves the move");
     let back = match step.action {
         Action::Rotate { module, joint, carried, .. } => {
             Action::Rotate { module, joint, to: state.linkage().modules[module].joints[joint], carried }
@@ -63,13 +66,15 @@ fn take(problem: &Problem, state: &mut State, step: Step) -> Taken {
 
 /// Takes it back.
 fn take_back(problem: &Problem, state: &mut State, taken: &Taken) {
-    let now = view(problem, state.linkage());
+    let all = view(problem, state.linkage());
     for &connection in &taken.engaged {
         state.detach(connection);
     }
+    let now = problem.view(&problem.described(state.linkage()), taken.kept.clone());
+    let is_back_with_all = |step: &Step| all.kept(step) == taken.kept && step.carried == taken.step.carried;
+    assert!(all.steps(RULES).iter().any(is_back_with_all), "every move has a way back");
     let is_back = |step: &Step| step.action == taken.back && step.carried == taken.step.carried;
     let step = now.steps(RULES).into_iter().find(is_back).expect("every move has a way back");
-    assert_eq!(now.kept(&step), taken.kept);
     state.take(&now, &step);
     for &connection in &taken.released {
         state.attach(connection);
@@ -82,8 +87,11 @@ fn there_and_back(linkage: &Linkage, choices: &[Index]) {
     let first = State::new(problem.start.clone());
     let mut state = first.clone();
     let mut walk = Vec::new();
+    let clearance = Clearance::new(&problem);
     for choice in choices {
-        let steps = view(&problem, state.linkage()).steps(RULES);
+        let now = view(&problem, state.linkage());
+        let free = |step: &Step| clearance.is_free(&now, step);
+        let steps: Vec<Step> = now.steps(RULES).into_iter().filter(free).collect();
         if steps.is_empty() {
             break;
         }
@@ -195,4 +203,15 @@ fn what_is_held_stays() {
             assert_eq!(carried, expected);
         }
     }
+}
+
+#[test]
+fn the_symmetries_of_modules_follow_from_their_types() {
+    let count =
+        |linkage: &Linkage| problem(linkage).classes.iter().map(|class| class.symmetries.len()).collect::<Vec<_>>();
+    // Halves swapped, and either half turned over with its joint's sign: 2 times 2 times 2.
+    assert_eq!(count(&chain(&[[0, 0, 0]], &[])), [8]);
+    // A node turned by quarters or upside down; a strut by half a turn, since it holds less across than along, or
+    // its ends swapped.
+    assert_eq!(count(&string(&[[0, 90, 0]])), [8, 4]);
 }
