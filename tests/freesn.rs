@@ -11,9 +11,11 @@ fn suspension() -> String {
     let mut module = |id: &str, kind: &str, place: &str| {
         modules.push(format!(r#"{{"id":"{id}","type":"{kind}"{place}}}"#));
     };
+    // At the lower pole half a turn keeps the x axes of the strut and the node parallel.
     let mut connect = |strut: &str, node: &str, direction: &str| {
         let ports = format!(r#""ports":["{strut}","{node}:surface"]"#);
-        connections.push(format!(r#"{{{ports},"direction":[{direction}],"spin_deg":0}}"#));
+        let spin = if direction == "0,0,-1" { 180 } else { 0 };
+        connections.push(format!(r#"{{{ports},"direction":[{direction}],"spin_deg":{spin}}}"#));
     };
     for column in 0..4 {
         let x = f64::from(column) * 0.207;

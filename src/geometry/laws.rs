@@ -227,7 +227,9 @@ proptest! {
         prop_assert!(contact(&shifted(&near, -direction * 1e-5), &b, TOUCH).is_none());
         prop_assert!(!overlap(&near, &b, SKIN * near.size()));
         let deeper = shifted(&near, direction * 1e-4);
-        prop_assert!(penetration(&deeper, &b) <= 1e-4 + 2e-5);
+        // Of cylinders it is an upper bound.
+        let is_cylinder = |solid: &Solid| matches!(solid.shape, Shape::Cylinder { .. });
+        prop_assert!(is_cylinder(&a) || is_cylinder(&b) || penetration(&deeper, &b) <= 1e-4 + 1e-8);
         // A corner on a corner may pass by.
         if contact(&near, &b, TOUCH).is_some() {
             prop_assert!(contact(&deeper, &b, TOUCH).is_none());

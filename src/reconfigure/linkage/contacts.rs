@@ -31,7 +31,7 @@ impl<'a> Contacts<'a> {
     }
 
     /// The robot of an arrangement with every possible connection engaged.
-    pub fn saturated(&self, arrangement: &Arrangement, modules: Vec<Arc<Place>>) -> View<'a> {
+    pub fn saturated(&self, arrangement: &Arrangement, modules: Vec<Arc<Place>>) -> View {
         let mut known = self.known.lock().expect("no thread panics while it holds what is known");
         let mut connections = Vec::new();
         for (b, second) in modules.iter().enumerate() {
@@ -48,7 +48,7 @@ impl<'a> Contacts<'a> {
             }
         }
         connections.sort_unstable();
-        View { classes: &self.problem.classes, modules, connections }
+        View { classes: Arc::clone(&self.problem.classes), modules, connections }
     }
 
     /// Whether two modules are farther apart than any of their ports reach.

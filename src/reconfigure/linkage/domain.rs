@@ -1,7 +1,7 @@
 //! What the searches over a linkage share: arrangements, moves that hit nothing, and margins as widths.
 
-use std::collections::HashMap;
-use std::sync::Mutex;
+use std::collections::{HashMap, VecDeque};
+use std::sync::{Arc, Mutex, MutexGuard};
 
 use planners::Width;
 
@@ -19,6 +19,19 @@ use super::oracle::Oracle;
 use super::places::Place;
 use super::problem::{Described, Problem};
 
+/// How many robots are kept with their moves.
+const RECENT: usize = 4;
+
+/// The robot of an arrangement with its moves.
+#[derive(Debug)]
+pub struct Moves {
+    arrangement: Arrangement,
+    /// The robot, everything engaged.
+    pub view: View,
+    /// Its moves, in their order.
+    pub steps: Vec<Step>,
+}
+
 /// A problem with everything that answers questions about its states.
 pub struct Domain<'a> {
     /// The problem.
@@ -33,6 +46,8 @@ pub struct Domain<'a> {
     pub stability: bool,
     contacts: Contacts<'a>,
     clearance: Clearance,
+    /// What was looked at last: a search asks for the moves out of one state several times in a row, on either end.
+    recent: Mutex<VecDeque<Arc<Moves>>>,
     /// Margins at rest with everything engaged.
     at_rest: Mutex<HashMap<Arrangement, Bracket>>,
 }
@@ -49,6 +64,7 @@ impl<'a> Domain<'a> {
             stability,
             contacts: Contacts::new(problem),
             clearance: Clearance::new(problem),
+            recent: Mutex::new(VecDeque::new()),
             at_rest: Mutex::new(HashMap::new()),
         }
     }
@@ -59,8 +75,26 @@ impl<'a> Domain<'a> {
     }
 
     /// The robot of an arrangement with everything engaged.
-    pub fn saturated(&self, arrangement: &Arrangement) -> View<'a> {
+    pub fn saturated(&self, arrangement: &Arrangement) -> View {
         self.contacts.saturated(arrangement, self.arrangements.modules(arrangement))
+    }
+
+    /// The robot of an arrangement with its moves.
+    pub fn moves(&self, arrangement: &Arrangement) -> Arc<Moves> {
+        let mut recent = self.recent();
+        let known = recent.iter().position(|moves| moves.arrangement == *arrangement);
+        let moves = known.and_then(|index| recent.remove(index)).unwrap_or_else(|| {
+            let view = self.saturated(arrangement);
+            let steps = view.steps(self.rules());
+            Arc::new(Moves { arrangement: arrangement.clone(), view, steps })
+        });
+        recent.truncate(RECENT - 1);
+        recent.push_front(Arc::clone(&moves));
+        moves
+    }
+
+    fn recent(&self) -> MutexGuard<'_, VecDeque<Arc<Moves>>> {
+        self.recent.lock().expect("no thread panics while it holds moves")
     }
 
     /// Whether a state at rest is connected, if it has to be.
@@ -104,10 +138,10 @@ impl<'a> Domain<'a> {
 
 impl Problem {
     /// A robot whose modules are in this order, with these connections engaged.
-    pub fn view(&self, modules: &[Described], connections: Vec<Connection>) -> View<'_> {
+    pub fn view(&self, modules: &[Described], connections: Vec<Connection>) -> View {
         let place =
             |(class, pose, joints): &Described| Place::new(*class, &self.classes[*class].kind, *pose, joints).into();
-        View { classes: &self.classes, modules: modules.iter().map(place).collect(), connections }
+        View { classes: Arc::clone(&self.classes), modules: modules.iter().map(place).collect(), connections }
     }
 }
 

@@ -23,7 +23,7 @@ pub struct GoalTest {
 
 /// A connection by the places of its modules and its own, whatever modules and ports are called.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Bond {
+pub struct Bond {
     places: [PlaceId; 2],
     at: Vec3,
 }
@@ -45,8 +45,7 @@ impl GoalTest {
     pub fn connections(&self, view: &View, framed: &Framed) -> Option<Vec<Connection>> {
         let here = bonds(view, framed);
         let find = |wanted: &Bond| {
-            let is_same = |bond: &Bond| bond.places == wanted.places && (bond.at - wanted.at).norm() <= self.tolerance;
-            here.iter().position(is_same).map(|index| view.connections[index])
+            here.iter().position(|bond| bond.is_at(wanted, self.tolerance)).map(|index| view.connections[index])
         };
         let mut found: Vec<Connection> = self.bonds.iter().map(find).collect::<Option<_>>()?;
         found.sort_unstable();
@@ -54,8 +53,15 @@ impl GoalTest {
     }
 }
 
+impl Bond {
+    /// Whether it is at the place of another one, up to a distance in m.
+    pub fn is_at(&self, other: &Self, tolerance: f64) -> bool {
+        self.places == other.places && (self.at - other.at).norm() <= tolerance
+    }
+}
+
 /// The connections of a robot by where they are in the frame of its arrangement, in their order.
-fn bonds(view: &View, framed: &Framed) -> Vec<Bond> {
+pub fn bonds(view: &View, framed: &Framed) -> Vec<Bond> {
     let back = framed.frame.inverse();
     let bond = |connection: &Connection| {
         let mut places = connection.modules().map(|module| framed.of_module[module]);

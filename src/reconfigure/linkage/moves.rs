@@ -18,9 +18,9 @@ use super::sides::Graph;
 
 /// A robot in some description: modules, and the connections between them that are engaged.
 #[derive(Clone, Debug)]
-pub struct View<'a> {
+pub struct View {
     /// The classes of the modules.
-    pub classes: &'a [Class],
+    pub classes: Arc<[Class]>,
     /// The modules.
     pub modules: Vec<Arc<Place>>,
     /// The engaged connections, sorted; modules are indices into `modules`.
@@ -47,7 +47,7 @@ pub struct Rules {
     pub either_side: bool,
 }
 
-impl View<'_> {
+impl View {
     /// The type of a module.
     pub fn kind(&self, module: usize) -> &ModuleType {
         &self.classes[self.modules[module].class].kind
@@ -125,21 +125,19 @@ impl View<'_> {
         };
         let graph = Graph::new(count + 1, self.connections.iter().map(|connection| connection.ports.map(vertex)));
         let parent = self.modules[module].bodies[kind.parent];
-        for to in targets(kind, self.modules[module].joints[joint]) {
-            for carried in [Half::Child, Half::Parent] {
-                let (inside, outside) = if carried == Half::Child { (count, module) } else { (module, count) };
-                let motion = Motion::Rotation {
-                    centre: (parent * Point::from(kind.origin)).coords,
-                    axis: parent.rotation * kind.axis,
-                    angle: (f64::from(to.1) * kind.step_degrees).to_radians()
-                        * if inside == count { 1.0 } else { -1.0 },
-                };
-                for mut side in graph.sides(inside, outside, rules.connected) {
-                    side.truncate(count);
-                    side[module] = false;
-                    let action = Action::Rotate { module, joint, to: to.0, carried };
-                    self.add(Step { action, carried: side, motion: motion.clone() }, rules, steps);
-                }
+        let centre = (parent * Point::from(kind.origin)).coords;
+        let axis = parent.rotation * kind.axis;
+        let targets = targets(kind, self.modules[module].joints[joint]);
+        for (carried, side) in graph.both_sides([count, module], rules.connected) {
+            let half = if carried == 0 { Half::Child } else { Half::Parent };
+            let mut side = side[..count].to_vec();
+            side[module] = false;
+            for &(to, sign) in &targets {
+                let degrees = f64::from(sign) * kind.step_degrees;
+                let angle = if half == Half::Child { degrees } else { -degrees }.to_radians();
+                let action = Action::Rotate { module, joint, to, carried: half };
+                let motion = Motion::Rotation { centre, axis, angle };
+                self.add(Step { action, carried: side.clone(), motion }, rules, steps);
             }
         }
     }
@@ -160,17 +158,18 @@ impl View<'_> {
         let from = Spot::of(&(ball_pose.rotation.inverse() * mated(&port_pose, 0.0).rotation));
         let others = self.connections.iter().filter(|other| **other != connection).map(Connection::modules);
         let graph = Graph::new(self.modules.len(), others);
-        for turn in turns(from, step) {
-            for (inside, outside, sign) in [(point.module, ball.module, 1.0), (ball.module, point.module, -1.0)] {
+        let turns = turns(from, step);
+        let ends = [point.module, ball.module];
+        for (moving, side) in graph.both_sides(ends, rules.connected) {
+            for turn in &turns {
+                let degrees = if moving == 0 { turn.degrees } else { -turn.degrees };
                 let motion = Motion::Rotation {
                     centre: centre.translation.vector,
                     axis: ball_pose.rotation * turn.axis,
-                    angle: sign * turn.degrees.to_radians(),
+                    angle: degrees.to_radians(),
                 };
-                for carried in graph.sides(inside, outside, rules.connected) {
-                    let action = Action::Roll { connection, to: turn.to, carried: inside };
-                    self.add(Step { action, carried, motion: motion.clone() }, rules, steps);
-                }
+                let action = Action::Roll { connection, to: turn.to, carried: ends[moving] };
+                self.add(Step { action, carried: side.clone(), motion }, rules, steps);
             }
         }
     }

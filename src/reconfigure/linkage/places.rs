@@ -58,7 +58,8 @@ pub struct Descriptions {
 pub struct Places {
     symmetries: Vec<Vec<Symmetry>>,
     types: Vec<Arc<ModuleType>>,
-    descriptions: HashMap<(usize, Vec<i32>), Arc<Descriptions>>,
+    /// By class and joint positions.
+    descriptions: Vec<HashMap<Arc<[i32]>, Arc<Descriptions>>>,
     entries: Vec<Vec<Arc<Place>>>,
     /// Places by class, joint positions and cell of a grid.
     near: HashMap<u64, Vec<u32>>,
@@ -75,7 +76,7 @@ impl Places {
         Self {
             symmetries: classes.iter().map(|class| class.symmetries.clone()).collect(),
             types: classes.iter().map(|class| Arc::clone(&class.kind)).collect(),
-            descriptions: HashMap::new(),
+            descriptions: classes.iter().map(|_| HashMap::new()).collect(),
             entries: vec![Vec::new(); classes.len()],
             near: HashMap::new(),
             // Codes are rounded to a micro-degree, ports meet within [`MEETING`].
@@ -91,8 +92,7 @@ impl Places {
 
     /// The ways to describe a module of a class with these joint positions.
     pub fn descriptions(&mut self, class: usize, joints: &[i32]) -> Arc<Descriptions> {
-        // A map with borrowed keys needs an owned one only for what is new.
-        if let Some(known) = self.descriptions.get(&(class, joints.to_vec())) {
+        if let Some(known) = self.descriptions[class].get(joints) {
             return Arc::clone(known);
         }
         let kind = &self.types[class];
@@ -103,7 +103,7 @@ impl Places {
         let frames = all.iter().filter(is_least).map(frame).collect();
         let bodies = kind.body_poses(&least);
         let new = Arc::new(Descriptions { joints: least.into(), frames, bodies });
-        self.descriptions.insert((class, joints.to_vec()), Arc::clone(&new));
+        self.descriptions[class].insert(joints.into(), Arc::clone(&new));
         new
     }
 

@@ -53,7 +53,7 @@ pub struct Problem {
     /// The goal, likewise.
     pub goal: Linkage,
     /// The classes of the modules.
-    pub classes: Vec<Class>,
+    pub classes: Arc<[Class]>,
     /// The class of each module of the start.
     pub class_of: Vec<usize>,
     /// The class of each module of the goal.
@@ -78,7 +78,7 @@ impl Problem {
         let wanted = goal_classes(&start, &class_of, &classes, &wanted_linkage, goal.matching.labelled)?;
         let mut slots: Vec<usize> = (0..start.modules.len()).collect();
         slots.sort_by_key(|&module| class_of[module]);
-        Ok(Self { start, goal: wanted_linkage, classes, class_of, wanted, frame, slots })
+        Ok(Self { start, goal: wanted_linkage, classes: classes.into(), class_of, wanted, frame, slots })
     }
 
     /// The modules of a linkage that has the start's modules.

@@ -11,7 +11,6 @@ use planners::{Reversible, Space, Transition, Width};
 
 use super::arrangement::Arrangement;
 use super::domain::{Domain, framed, width};
-use super::moves::Step;
 
 /// An arrangement, all connections engaged; or the goal with its own connections.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -75,21 +74,21 @@ impl<'a> Saturated<'a> {
 
     /// The moves out of an arrangement, each with the number of its step and what it leads to.
     fn neighbours(&self, from: &Arrangement) -> impl Iterator<Item = (usize, Arrangement)> {
-        let view = self.domain.saturated(from);
-        let steps = view.steps(self.domain.rules());
-        let arrangements = &self.domain.arrangements;
-        let moved = steps.into_iter().enumerate();
-        let moved = moved.map(move |(index, step)| (index, arrangements.of(&view.after(&step)).arrangement));
+        let moves = self.domain.moves(from);
         let from = from.clone();
-        moved.filter(move |(_, to)| *to != from)
+        (0..moves.steps.len()).filter_map(move |index| {
+            let after = moves.view.after(&moves.steps[index]);
+            let to = self.domain.arrangements.of(&after).arrangement;
+            (to != from).then_some((index, to))
+        })
     }
 
     /// Width of a move out of `from` with the detachments before it.
     fn of_move(&self, from: &Arrangement, index: usize, to: &Arrangement, floor: f64) -> Width {
         let impossible = Width::exact(f64::NEG_INFINITY);
-        let view = self.domain.saturated(from);
-        let step: Step = view.steps(self.domain.rules()).swap_remove(index);
-        if !self.domain.is_free(&view, &step) {
+        let moves = self.domain.moves(from);
+        let (view, step) = (&moves.view, &moves.steps[index]);
+        if !self.domain.is_free(view, step) {
             return impossible;
         }
         if !self.domain.stability {
@@ -104,7 +103,7 @@ impl<'a> Saturated<'a> {
                 }
             }
         }
-        width(self.domain.of_move(&view, &step, floor).margin)
+        width(self.domain.of_move(view, step, floor).margin)
     }
 }
 

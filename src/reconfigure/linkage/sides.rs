@@ -30,6 +30,20 @@ impl Graph {
         found
     }
 
+    /// Every way to split the graph between two vertices: which of them (0 or 1) is in a set that holds together,
+    /// with the set; whether the other vertices must hold together with the other end says `both`.
+    pub fn both_sides(&self, [first, second]: [usize; 2], both: bool) -> Vec<(usize, Vec<bool>)> {
+        let of_first = self.sides(first, second, both);
+        let of_second = if both {
+            let complement = |side: &Vec<bool>| side.iter().map(|inside| !inside).collect();
+            of_first.iter().map(complement).collect()
+        } else {
+            self.sides(second, first, both)
+        };
+        let first = of_first.into_iter().map(|side| (0, side));
+        first.chain(of_second.into_iter().map(|side: Vec<bool>| (1, side))).collect()
+    }
+
     /// Adds all sets that go on from here: the first open vertex next to the set is in or out.
     fn split(&self, sides: &mut [Side], outside: usize, both: bool, found: &mut Vec<Vec<bool>>) {
         if both && !self.rest_holds(sides, outside) {

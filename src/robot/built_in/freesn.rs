@@ -27,6 +27,11 @@ const STRUT_MASS: f64 = 0.492;
 /// wheels and magnets that leave room for six struts around a node at right angles.
 const STRUT_RADIUS: f64 = 0.04;
 
+/// Height in m of that cylinder. **Estimate**: a strut that lets go of one node turns about the
+/// node at its other end, and its rounded wheels clear the ball that it leaves. The corner of a cylinder of height
+/// h passes that ball when hypot(h / 2 + 103.5 mm, 40 mm) <= 147 mm, for h up to 75.9 mm.
+const SOLID_HEIGHT: f64 = 0.075;
+
 /// Rated characteristic strength in N of a strut's connection. Published: 109.2 N, the pull of its magnets.
 const STRENGTH: f64 = 109.2;
 
@@ -77,7 +82,7 @@ fn strut() -> ModuleType {
     let down = Rotation::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI);
     ModuleType {
         name: "strut".into(),
-        bodies: vec![body("body", STRUT_MASS, Shape::Cylinder { radius: STRUT_RADIUS, height: STRUT_HEIGHT })],
+        bodies: vec![body("body", STRUT_MASS, Shape::Cylinder { radius: STRUT_RADIUS, height: SOLID_HEIGHT })],
         joints: Vec::new(),
         ports: vec![end("bottom", -STRUT_HEIGHT / 2.0, down), end("top", STRUT_HEIGHT / 2.0, Rotation::identity())],
         rotates: false,

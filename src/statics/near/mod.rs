@@ -21,7 +21,8 @@
 //!   its wrench is put back into its cone (`put_back`) and the next round begins there.
 //!   Faces are carried by the forces at their points (`field`), which prove what the faces
 //!   hold without an optimisation of their own.
-//! - The same factorisation yields twists: if the loads win, the way in which they do.
+//! - The same factorisation yields twists: if the loads win, the way in which they do. It is
+//!   remembered too: where only loads changed, or a link came, it mostly balances again.
 //!
 //! Wrong or useless fields cost tightness, never soundness: `bracket` evaluates
 //! all bounds on this structure's own data, exactly as it does for solvers. A
