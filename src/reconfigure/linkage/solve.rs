@@ -111,7 +111,7 @@ impl Ends {
             }
             let (worst, required) = (end.worst?, required?);
             let upper = worst.margin.upper;
-            (upper < required || upper == f64::NEG_INFINITY).then(|| Impossible::Unstable {
+            (upper < required || upper == f64::NEG_INFINITY).then_some(Impossible::Unstable {
                 which: end.which,
                 margin: worst.margin,
                 required,

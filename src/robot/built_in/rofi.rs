@@ -106,7 +106,7 @@ impl Catalogue {
     pub fn rofi_with(step_degrees: u32, pads: &[[u32; 2]]) -> Self {
         let mut catalogue = Self::rofi();
         if step_degrees != STEP_DEGREES {
-            assert!(step_degrees > 0 && STEP_DEGREES % step_degrees == 0, "the step divides 90 degrees");
+            assert!(step_degrees > 0 && STEP_DEGREES.is_multiple_of(step_degrees), "the step divides 90 degrees");
             catalogue.module_types[0] = universal(step_degrees);
             catalogue.name += &format!(" in steps of {step_degrees} degrees");
         }
