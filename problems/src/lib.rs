@@ -16,6 +16,8 @@ pub struct Manifest {
     pub structures: IndexMap<String, StructureCase>,
     /// Planning problems by name: `cubes/NAME/start.json` and `goal.json`.
     pub cubes: IndexMap<String, PlanningCase>,
+    /// Planning problems of RoFI modules by name: `rofi/NAME/start.json` and `goal.json`.
+    pub rofi: IndexMap<String, PlanningCase>,
 }
 
 /// The expected answers to a planning problem.
@@ -141,11 +143,14 @@ mod tests {
 
     #[test]
     fn every_planning_problem_has_an_expected_answer_and_the_other_way_round() {
-        let mut expected: Vec<_> = manifest().unwrap().cubes.into_keys().collect();
-        expected.sort();
-        let entries = std::fs::read_dir(root().join("cubes")).unwrap();
-        let mut present: Vec<_> = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
-        present.sort();
-        assert_eq!(present, expected);
+        let Manifest { cubes, rofi, .. } = manifest().unwrap();
+        for (family, cases) in [("cubes", cubes), ("rofi", rofi)] {
+            let mut expected: Vec<_> = cases.into_keys().collect();
+            expected.sort();
+            let entries = std::fs::read_dir(root().join(family)).unwrap();
+            let mut present: Vec<_> = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+            present.sort();
+            assert_eq!(present, expected);
+        }
     }
 }
