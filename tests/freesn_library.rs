@@ -1,4 +1,4 @@
-//! The planner on every planning problem of the library whose robot is outside lattices: a test for each
+//! The planner on every planning problem of the library with struts and nodes: a test for each
 //! question. Every plan that is found is replayed.
 
 use std::time::Duration;
@@ -16,7 +16,7 @@ const TIME_LIMIT: Duration = Duration::from_secs(600);
 
 fn main() {
     let manifest = problems::manifest().expect("the manifest is sound");
-    let trials = manifest.linkages.into_iter().flat_map(|(name, case)| trials(&name, &case)).collect();
+    let trials = manifest.freesn.into_iter().flat_map(|(name, case)| trials(&name, &case)).collect();
     libtest_mimic::run(&Arguments::from_args(), trials).exit();
 }
 
@@ -39,7 +39,7 @@ fn trials(name: &str, case: &PlanningCase) -> Vec<Trial> {
 }
 
 fn read(name: &str) -> Result<LinkageProblem, Failed> {
-    let directory = problems::root().join(name);
+    let directory = problems::root().join("freesn").join(name);
     let file = |which: &str| std::fs::read(directory.join(which)).map(|bytes| SourceFile::new(which, bytes));
     let problem = read_problem(&file("start.json")?, &file("goal.json")?, &no_references)?;
     problem.into_linkage().ok_or_else(|| "all modules sit in a lattice".into())
