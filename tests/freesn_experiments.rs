@@ -4,6 +4,7 @@ use libtest_mimic::{Arguments, Failed, Trial};
 use nalgebra::Vector3;
 use problems::StructureCase;
 use steadfast::io::{NamedStructure, SourceFile, no_references, read_linkage};
+use steadfast::reconfigure::linkage::{Turning, motion_range};
 use steadfast::robot::ModuleLoad;
 use steadfast::robot::linkage::Linkage;
 use steadfast::statics::{Model, Question, Verdict, assess};
@@ -21,6 +22,7 @@ fn main() {
         cases.map(|(name, case)| Trial::test(name.clone(), move || check(&name, &case))).collect();
     trials.push(Trial::test("opened_with_other_connectors", opened_with_other_connectors));
     trials.push(Trial::test("load_in_steps", load_in_steps));
+    trials.push(Trial::test("motion_ranges", motion_ranges));
     libtest_mimic::run(&Arguments::from_args(), trials).exit();
 }
 
@@ -102,6 +104,26 @@ fn load_in_steps() -> Result<(), Failed> {
         let found = required(&loaded)?;
         if !((found - expected).abs() <= 1e-6 * expected) {
             return Err(format!("{weight} N: expected {expected} N, found {found} N").into());
+        }
+    }
+    Ok(())
+}
+
+/// How many positions of the bottom strut, 5 degrees apart, hold with radii of 10.34 mm; with the built-in
+/// catalogue all do.
+fn motion_ranges() -> Result<(), Failed> {
+    for (angle, narrow) in [(0, 938), (30, 1010), (90, 1370)] {
+        for (name, expected) in [(format!("arm_{angle}"), 2522), (format!("arm_{angle}_narrow"), narrow)] {
+            let linkage = read(&name)?;
+            let moving = |modules: [usize; 2]| modules.map(|module| linkage.modules[module].id.as_str());
+            let rolls = linkage.connections.iter().find(|c| matches!(moving(c.modules()), ["base", "bottom"]));
+            let (connection, carried) = (*rolls.ok_or("the bottom strut stands on the base")?, 1);
+            let range = motion_range(&linkage, Turning::Roll { connection, carried }, 5.0)?;
+            let stable = range.stands.iter().filter(|stand| stand.verdict == Verdict::Stable).count();
+            if (range.stands.len(), stable) != (2522, expected) {
+                let (found, all) = (stable, range.stands.len());
+                return Err(format!("{name}: expected {expected} of 2522 positions, found {found} of {all}").into());
+            }
         }
     }
     Ok(())
