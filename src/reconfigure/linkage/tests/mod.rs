@@ -94,6 +94,11 @@ fn goal(linkage: Linkage) -> Goal {
     Goal { linkage, matching: Matching::default() }
 }
 
+/// A goal of interchangeable modules anywhere.
+fn anywhere(linkage: Linkage) -> Goal {
+    Goal { linkage, matching: Matching { labelled: false, free_frame: true } }
+}
+
 /// Plans and has every plan replayed.
 fn plan(start: &Linkage, goal: &Goal, options: &Options) -> Report<Action, Held> {
     let report = solve(start, goal, options, &mut |_| {}).expect("the input is sound");
