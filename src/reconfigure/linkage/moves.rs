@@ -201,7 +201,7 @@ struct Turn {
 
 /// All turns by one step out of a spot: about the ball's z axis, towards and from its poles, and in place.
 fn turns(from: Spot, step: f64) -> Vec<Turn> {
-    let micro = (step * f64::from(MICRO)).round() as i32;
+    let micro = ((step * f64::from(MICRO)).round() as i32).max(1);
     let half = 180 * MICRO;
     let is_pole = from.polar() == 0 || from.polar() == half;
     let about = |axis: Vec3, azimuth: i32| {
@@ -215,25 +215,38 @@ fn turns(from: Spot, step: f64) -> Vec<Turn> {
             let to = Spot::new(from.azimuth() + sign * micro, from.polar(), from.spin());
             turns.push(Turn { to, axis: Vec3::z_axis(), degrees });
         }
-        // At a pole azimuth and spin turn about one axis; of their sum (or difference) nothing changes on leaving.
         let polar = from.polar() + sign * micro;
         if (0..=half).contains(&polar) {
-            let azimuths: Vec<i32> =
-                if is_pole { (0..360 * MICRO / micro).map(|i| i * micro).collect() } else { vec![from.azimuth()] };
+            let azimuths = if is_pole { meridians(from, micro) } else { vec![from.azimuth()] };
             for azimuth in azimuths {
-                let shift = if !is_pole {
-                    0
-                } else if from.polar() == 0 {
-                    -azimuth
-                } else {
-                    azimuth
+                // At a pole azimuth and spin turn about one axis: leaving it changes neither their sum (in the north)
+                // nor their difference.
+                let shift = match from.polar() {
+                    0 => -azimuth,
+                    pole if pole == half => azimuth,
+                    _ => 0,
                 };
                 let to = Spot::new(azimuth, polar, from.spin() + shift);
-                turns.push(Turn { to, axis: about(Vec3::y(), azimuth), degrees });
+                let arrives = polar == 0 || polar == half;
+                if !arrives || is_pole || meridians(to, micro).contains(&azimuth) {
+                    turns.push(Turn { to, axis: about(Vec3::y(), azimuth), degrees });
+                }
             }
         }
         let to = Spot::new(from.azimuth(), from.polar(), from.spin() + sign * micro);
         turns.push(Turn { to, axis: Unit::new_normalize(from.direction()), degrees });
     }
     turns
+}
+
+/// The azimuths along which a port leaves a pole, and arrives at it: multiples of the step, counted from the ball's x
+/// axis and from the port's own.
+fn meridians(pole: Spot, step: i32) -> Vec<i32> {
+    let turn = 360 * MICRO;
+    let own = if pole.polar() == 0 { pole.spin() } else { -pole.spin() };
+    let from = |first: i32| (0..(turn + step - 1) / step).map(move |i| (first + i * step).rem_euclid(turn));
+    let mut azimuths: Vec<i32> = from(0).chain(from(own)).collect();
+    azimuths.sort_unstable();
+    azimuths.dedup();
+    azimuths
 }

@@ -116,11 +116,11 @@ fn frame(start: &Linkage, goal: &Goal) -> Result<Frame, Refusal> {
     let is_loaded = !start.loads.is_empty();
     let has_ground = start.environment.ground.is_some();
     let is_empty = start.environment.obstacles.is_empty() && !has_ground;
-    if is_empty && !is_held && !is_loaded && start.gravity == Vec3::zeros() {
-        return Ok(Frame::Free);
-    }
     if !goal.matching.free_frame {
         return Ok(Frame::World);
+    }
+    if is_empty && !is_held && !is_loaded && start.gravity == Vec3::zeros() {
+        return Ok(Frame::Free);
     }
     let because = match () {
         () if is_held => "a module is fixed",

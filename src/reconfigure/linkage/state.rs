@@ -2,26 +2,33 @@
 //! identical state.
 //!
 //! Poses follow from the joints and from how ports engage ([`Linkage::placed_by`]). Where the module that the
-//! others follow from moves itself, its displacement from where it was at first is on a grid.
+//! others follow from moves itself, it comes back to where it was before exactly, not nearly.
 
 use crate::geometry::Motion;
 use crate::robot::linkage::{Code, Connection, Linkage};
-use crate::spatial::{Pose, Rotation};
+use crate::spatial::Pose;
 
 use super::action::Action;
 use super::moves::{Step, View};
 
-/// Steps of the grid of displacements in a metre, and in the unit of a quaternion: far below every tolerance, far
-/// above the rounding of poses.
-const GRID: f64 = (1_u64 << 36) as f64;
+/// Distance in m, and angle in rad, up to which a pose is one that was taken before: far above the rounding of
+/// any number of moves, and far below a micro-degree.
+const SAME: f64 = 1e-9;
 
 /// A linkage with a code for each of its connections.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct State {
     linkage: Linkage,
     codes: Vec<Code>,
-    /// Where each module was at first.
-    home: Vec<Pose>,
+    /// Poses of modules that others follow from, before and after each move of one.
+    taken: Vec<Pose>,
+}
+
+impl PartialEq for State {
+    /// By where it is now, whatever the way.
+    fn eq(&self, other: &Self) -> bool {
+        self.linkage == other.linkage && self.codes == other.codes
+    }
 }
 
 impl State {
@@ -29,9 +36,8 @@ impl State {
     pub fn new(mut linkage: Linkage) -> Self {
         linkage.connections.sort_unstable();
         let codes = linkage.connections.iter().map(|connection| linkage.code(connection)).collect();
-        let mut state = Self { linkage, codes, home: Vec::new() };
+        let mut state = Self { linkage, codes, taken: Vec::new() };
         state.derive();
-        state.home = state.linkage.modules.iter().map(|module| module.pose).collect();
         state
     }
 
@@ -60,11 +66,10 @@ impl State {
     /// Makes a move of the linkage, whose modules `view` shows in their order. What joins the two sides must have been
     /// released.
     pub fn take(&mut self, view: &View, step: &Step) {
-        for module in 0..self.linkage.modules.len() {
-            if view.moves(step, module, 0) {
-                let moved = displaced(&self.linkage.modules[module].pose, &step.motion, &self.home[module]);
-                self.linkage.modules[module].pose = moved;
-            }
+        let first = self.linkage.components();
+        for module in (0..first.len()).filter(|&module| first[module] == module && view.moves(step, module, 0)) {
+            let before = self.linkage.modules[module].pose;
+            self.linkage.modules[module].pose = self.again(before, &step.motion);
         }
         match step.action {
             Action::Rotate { module, joint, to, .. } => self.linkage.modules[module].joints[joint] = to,
@@ -85,15 +90,22 @@ impl State {
             module.pose = pose;
         }
     }
-}
 
-/// A pose after a motion, displaced from `home` by what is nearest on the grid.
-fn displaced(pose: &Pose, motion: &Motion, home: &Pose) -> Pose {
-    let displacement = motion.pose(pose, 1.0) * home.inverse();
-    let on_grid = |x: f64| (x * GRID).round() / GRID;
-    // Of a quaternion and its opposite, the same rotation, the one whose largest part is positive.
-    let quaternion = displacement.rotation.coords;
-    let sign = if quaternion[quaternion.iamax()] < 0.0 { -1.0 } else { 1.0 };
-    let rotation = Rotation::from_quaternion((sign * quaternion).map(on_grid).into());
-    Pose::from_parts(displacement.translation.vector.map(on_grid).into(), rotation) * home
+    /// A pose after a motion: the one that was taken there before, if it was.
+    fn again(&mut self, before: Pose, motion: &Motion) -> Pose {
+        self.remembered(before);
+        self.remembered(motion.pose(&before, 1.0))
+    }
+
+    fn remembered(&mut self, pose: Pose) -> Pose {
+        let is_same = |other: &&Pose| {
+            let apart = other.translation.vector - pose.translation.vector;
+            apart.norm() <= SAME && other.rotation.angle_to(&pose.rotation) <= SAME
+        };
+        if let Some(known) = self.taken.iter().find(is_same) {
+            return *known;
+        }
+        self.taken.push(pose);
+        pose
+    }
 }

@@ -254,6 +254,8 @@ impl Search<'_> {
                     && (z - Vec3::z()).norm() <= MEETING
                     // A port that engages with surfaces only has no angles.
                     && (*m == 0 || is_multiple(angle.to_degrees(), 360.0 / f64::from(*m)))
+                    // Rolling over the poles of a ball goes by the port's own axes.
+                    && self.kind.roll_step_degrees.is_none_or(|step| is_multiple(angle.to_degrees(), step))
                     && port.connector.is_none_or(|connector| self.allows_turn(connector, angle))
             }
             (PortPlace::Surface, PortPlace::Surface) => {

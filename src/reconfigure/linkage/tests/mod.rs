@@ -2,6 +2,7 @@
 
 mod agreement;
 mod laws;
+mod motion_range;
 mod primitive;
 mod stability;
 
@@ -91,6 +92,11 @@ fn standing(mut linkage: Linkage, ground: Option<f64>) -> Linkage {
 /// A goal of interchangeable modules in the world frame.
 fn goal(linkage: Linkage) -> Goal {
     Goal { linkage, matching: Matching::default() }
+}
+
+/// A goal of interchangeable modules anywhere.
+fn anywhere(linkage: Linkage) -> Goal {
+    Goal { linkage, matching: Matching { labelled: false, free_frame: true } }
 }
 
 /// Plans and has every plan replayed.

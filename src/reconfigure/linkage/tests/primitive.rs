@@ -10,9 +10,12 @@ use crate::reconfigure::linkage::goal::bonds;
 use crate::reconfigure::linkage::moves::{Step, View};
 use crate::reconfigure::linkage::problem::Problem;
 use crate::reconfigure::linkage::saturated::Saturated;
+use crate::robot::Catalogue;
 use crate::robot::linkage::{Connection, Linkage};
+use crate::robot::rofi::CELL;
+use crate::spatial::Pose;
 
-use super::{chain, goal, standing, string};
+use super::{goal, module, robot, standing, string};
 
 /// An arrangement and the engaged connections of its modules, sorted.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -126,16 +129,31 @@ fn agree(start: &Linkage, end: &Linkage) {
 }
 
 #[test]
-fn single_actions_do_no_better_with_two_universal_modules() {
-    let robot = |joints: &[[i32; 3]]| standing(chain(joints, &[0]), None);
-    agree(&robot(&[[0, 0, 0], [0, 0, 0]]), &robot(&[[0, 1, 0], [0, 0, 0]]));
+fn single_actions_do_no_better_with_a_strut() {
+    let robot = |azimuth| standing(string(&[[azimuth, 90, 0]]), None);
+    agree(&robot(0), &robot(90));
 }
 
 #[test]
-fn single_actions_do_no_better_around_a_square() {
-    // Four struts and four nodes in a square: one corner must open before anything rolls.
-    let square = string(&[[0, 90, 0], [90, 90, 0], [180, 90, 0]]);
-    let start = standing(square, None);
-    let end = standing(string(&[[0, 90, 0], [90, 90, 0], [90, 90, 0]]), None);
+fn single_actions_do_no_better_where_a_loop_must_open() {
+    // Two modules side by side, docked twice: whatever turns, a dock must be released.
+    let catalogue = Catalogue::rofi();
+    let modules = [0.0, CELL]
+        .into_iter()
+        .enumerate()
+        .map(|(id, x)| module(&catalogue, "universal", id, Pose::translation(x, 0.0, 0.0), &[0, 0, 0]));
+    let modules = modules.collect();
+    let start = standing(robot(catalogue, modules), None);
+    assert_eq!(start.connections.len(), 2);
+    let problem = Problem::new(&start, &goal(start.clone())).expect("sound");
+    let view = problem.view(&problem.described(&start), start.connections.clone());
+    let domain = Domain::new(&problem, true);
+    let step = view.steps(domain.rules()).into_iter().find(|step| domain.is_free(&view, step)).expect("a move");
+    assert!(view.kept(&step).len() < 2);
+    let mut end = start.clone();
+    for (module, (_, pose, joints)) in end.modules.iter_mut().zip(view.after(&step)) {
+        (module.pose, module.joints) = (pose, joints.to_vec());
+    }
+    end.connections = end.touching();
     agree(&start, &end);
 }
