@@ -443,3 +443,26 @@ fn a_verdict_that_rests_on_squeeze_says_so() {
     let value: serde_json::Value = serde_json::from_str(&output).unwrap();
     assert!(value["relies_on_contact_self_stress"].is_null());
 }
+
+#[test]
+fn a_motion_range_is_a_table_and_a_picture() {
+    let directory = tempfile::tempdir().unwrap();
+    let [csv, svg] = ["range.csv", "range.svg"].map(|name| directory.path().join(name));
+    let range =
+        |what: &[&str]| plan(&[&["motion-range", "freesn/experiments/arm_0.json", "--step", "30"], what].concat());
+    let output = range(&["--connection", "top,node", "--csv", csv.to_str().unwrap(), "--svg", svg.to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    assert!(stdout(&output).contains("62 positions"), "{output:?}");
+    // 12 azimuths at 5 polar angles, and the poles.
+    let table = std::fs::read_to_string(csv).unwrap();
+    assert_eq!(table.lines().count(), 1 + 12 * 5 + 2);
+    assert!(std::fs::read_to_string(svg).unwrap().starts_with("<svg"));
+    for (what, said) in [
+        (&["--connection", "top,nobody"][..], "there is no module `nobody`"),
+        (&["--joint", "top.alpha"], "`top` has no joint `alpha`"),
+    ] {
+        let output = range(what);
+        assert_eq!(output.status.code(), Some(30));
+        assert!(String::from_utf8_lossy(&output.stderr).contains(said), "{output:?}");
+    }
+}

@@ -16,6 +16,12 @@ pub struct Manifest {
     pub structures: IndexMap<String, StructureCase>,
     /// Planning problems by name: `cubes/NAME/start.json` and `goal.json`.
     pub cubes: IndexMap<String, PlanningCase>,
+    /// Planning problems of RoFI modules by name: `rofi/NAME/start.json` and `goal.json`.
+    pub rofi: IndexMap<String, PlanningCase>,
+    /// Planning problems of struts and nodes by name: `freesn/NAME/start.json` and `goal.json`.
+    pub freesn: IndexMap<String, PlanningCase>,
+    /// Configurations of the published experiments with struts and nodes by name: `freesn/experiments/NAME.json`.
+    pub experiments: IndexMap<String, StructureCase>,
 }
 
 /// The expected answers to a planning problem.
@@ -141,10 +147,35 @@ mod tests {
 
     #[test]
     fn every_planning_problem_has_an_expected_answer_and_the_other_way_round() {
-        let mut expected: Vec<_> = manifest().unwrap().cubes.into_keys().collect();
+        let Manifest { cubes, rofi, .. } = manifest().unwrap();
+        for (family, cases) in [("cubes", cubes), ("rofi", rofi)] {
+            let mut expected: Vec<_> = cases.into_keys().collect();
+            expected.sort();
+            let entries = std::fs::read_dir(root().join(family)).unwrap();
+            let mut present: Vec<_> = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+            present.sort();
+            assert_eq!(present, expected);
+        }
+    }
+
+    #[test]
+    fn every_problem_of_struts_and_nodes_has_an_expected_answer_and_the_other_way_round() {
+        let mut expected: Vec<_> = manifest().unwrap().freesn.into_keys().collect();
         expected.sort();
-        let entries = std::fs::read_dir(root().join("cubes")).unwrap();
-        let mut present: Vec<_> = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+        let entries = std::fs::read_dir(root().join("freesn")).unwrap().map(|entry| entry.unwrap().path());
+        let problems = entries.filter(|path| path.join("start.json").exists());
+        let mut present: Vec<_> =
+            problems.map(|path| path.file_name().unwrap().to_str().unwrap().to_string()).collect();
+        present.sort();
+        assert_eq!(present, expected);
+    }
+
+    #[test]
+    fn every_experiment_has_an_expected_answer_and_the_other_way_round() {
+        let mut expected: Vec<_> = manifest().unwrap().experiments.into_keys().collect();
+        expected.sort();
+        let name = |path: PathBuf| path.file_stem().unwrap().to_str().unwrap().to_string();
+        let mut present: Vec<_> = json_files("freesn/experiments").unwrap().into_iter().map(name).collect();
         present.sort();
         assert_eq!(present, expected);
     }

@@ -14,10 +14,10 @@ use crate::statics::{Connector, Model, Question, assess};
 use super::super::assembly as lattice;
 use super::assembly::{Held, assemble};
 
-const GRAVITY: f64 = 9.81;
+pub(super) const GRAVITY: f64 = 9.81;
 
 /// An arm of one module, held at its base, with a joint half-way along it.
-fn arm(torque: f64) -> Linkage {
+pub(super) fn arm(torque: f64) -> Linkage {
     let body = |name: &str, x: f64| BodyType {
         name: name.into(),
         mass: 2.0,

@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use crate::geometry::Motion;
 use crate::reconfigure::worst::{self, Instant, Sampling, Worst};
 use crate::robot::linkage::Connection;
-use crate::spatial::Pose;
+use crate::spatial::{Pose, Vec3};
 use crate::statics::{Bracket, InvalidStructure, Question, assess};
 
 use super::assembly::{Assembler, Held, Transient};
@@ -24,6 +24,10 @@ const RESOLUTION_DEGREES: f64 = 1.5;
 /// The oracle for the states of one robot.
 pub struct Oracle<'a> {
     assembler: Assembler<'a>,
+    /// Whether there is neither gravity nor a load.
+    is_unloaded: bool,
+    /// The first joint of the robot.
+    first_joint: Option<Held>,
     solves: AtomicU64,
     fault: Mutex<Option<Vec<InvalidStructure>>>,
 }
@@ -31,7 +35,15 @@ pub struct Oracle<'a> {
 impl<'a> Oracle<'a> {
     /// For the modules of a problem's start.
     pub fn new(problem: &'a Problem) -> Self {
-        Self { assembler: Assembler::new(&problem.start), solves: AtomicU64::new(0), fault: Mutex::new(None) }
+        let start = &problem.start;
+        let first_joint = (0..start.modules.len()).find(|&module| !start.module_type(module).joints.is_empty());
+        Self {
+            assembler: Assembler::new(start),
+            is_unloaded: start.gravity == Vec3::zeros() && start.loads.is_empty(),
+            first_joint: first_joint.map(|module| Held::Joint { module, joint: 0 }),
+            solves: AtomicU64::new(0),
+            fault: Mutex::new(None),
+        }
     }
 
     /// Structures assessed so far.
@@ -44,10 +56,23 @@ impl<'a> Oracle<'a> {
         self.fault.lock().expect("no thread panics while it holds the fault").clone()
     }
 
+    /// The margin of every state where there is neither gravity nor a load: nothing is asked of any connection, so
+    /// nothing has to be assessed. `None` where there is.
+    fn unloaded(&self, engaged: &[Connection], instant: Instant) -> Option<Worst<Held>> {
+        self.is_unloaded.then(|| {
+            let weakest = self.first_joint.or_else(|| engaged.first().map(|&connection| Held::Ports(connection)));
+            Worst { margin: Bracket::new(1.0, 1.0), instant, weakest }
+        })
+    }
+
     /// Margin at rest of a robot whose modules stand for these of the start, with these connections engaged.
     pub fn of_state(&self, view: &View, slots: &[usize], engaged: &[Connection]) -> Worst<Held> {
+        let engaged = renamed(engaged, slots);
+        if let Some(unloaded) = self.unloaded(&engaged, Instant::Rest) {
+            return unloaded;
+        }
         self.solves.fetch_add(1, Ordering::Relaxed);
-        self.ask(&bodies(view, slots, |_, _, pose| pose), &renamed(engaged, slots), Instant::Rest)
+        self.ask(&bodies(view, slots, |_, _, pose| pose), &engaged, Instant::Rest)
     }
 
     /// Margin of the transient states of a move, ends included, with these connections engaged.
@@ -64,6 +89,9 @@ impl<'a> Oracle<'a> {
     ) -> Worst<Held> {
         let Motion::Rotation { angle, .. } = step.motion else { unreachable!("moves of linkages are turns") };
         let engaged = renamed(engaged, slots);
+        if let Some(unloaded) = self.unloaded(&engaged, Instant::Phase(0.0)) {
+            return unloaded;
+        }
         let degrees = angle.abs().to_degrees();
         let steps = (degrees / STEP_DEGREES - 1e-9).ceil().max(1.0) as u32;
         let sampling = Sampling { steps, resolution: RESOLUTION_DEGREES / degrees };

@@ -125,7 +125,7 @@ fn orientation(wire: &wire::NameOrNumber, place: &Place<'_>, findings: &mut Find
         wire::NameOrNumber::Number(number) => (Some(*number as usize).filter(|n| *n < 4), number.to_string()),
         wire::NameOrNumber::Name(name) => {
             let is_it = |known: &&str| *known == name || known.get(..1) == Some(name);
-            (ORIENTATIONS.iter().position(|known| is_it(known)), format!("\"{}\"", clipped(name)))
+            (ORIENTATIONS.iter().position(is_it), format!("\"{}\"", clipped(name)))
         }
     };
     if found.is_none() {

@@ -49,12 +49,10 @@ pub(super) fn missing(start: &Linkage, end: &Linkage, goal: &Goal) -> Option<Fau
     Some(if placed { Fault::ConnectionsDiffer } else { Fault::PlacementsDiffer })
 }
 
-/// The displacements of the goal that are worth a try: none, or, where the frame is free or nothing in the world
-/// tells one place from another, those that lay a port of its first module that has one on a port of a module of
-/// the state.
+/// The displacements of the goal that are worth a try: none, or those that lay a port of its first
+/// module that has one on a port of a module of the state.
 fn displacements(end: &Linkage, goal: &Goal) -> Vec<Pose> {
-    let is_nowhere = is_empty(end) && end.loads.is_empty() && !end.modules.iter().any(|module| module.fixed);
-    if !goal.matching.free_frame && !is_nowhere {
+    if !goal.matching.free_frame {
         return vec![Pose::identity()];
     }
     let wanted = &goal.linkage;
@@ -76,15 +74,11 @@ fn displacements(end: &Linkage, goal: &Goal) -> Vec<Pose> {
     turned.map(|frame| frame * from.inverse()).filter(|displacement| is_allowed(end, displacement)).collect()
 }
 
-/// Whether there is neither gravity nor anything around the robot.
-fn is_empty(world: &Linkage) -> bool {
-    let environment = &world.environment;
-    environment.ground.is_none() && environment.obstacles.is_empty() && world.gravity == Vec3::zeros()
-}
-
 /// Whether a displacement leaves the world as it is: any in an empty one, over the ground in another.
 fn is_allowed(world: &Linkage, displacement: &Pose) -> bool {
-    if is_empty(world) {
+    let environment = &world.environment;
+    let is_empty = environment.ground.is_none() && environment.obstacles.is_empty();
+    if is_empty && world.gravity == Vec3::zeros() {
         return true;
     }
     let up = displacement.rotation * Vec3::z();

@@ -2,6 +2,7 @@
 
 mod agreement;
 mod laws;
+mod motion_range;
 mod primitive;
 mod stability;
 
