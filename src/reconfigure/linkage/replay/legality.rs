@@ -103,7 +103,8 @@ fn roll(before: &Linkage, connection: Connection, to: Spot, carried: usize) -> R
     let ball_body = before.module_type(ball.module).ports[ball.port].body;
     let frame = before.body_of(ball);
     let centre = frame * before.module_type(ball.module).bodies[ball_body].shape_pose;
-    let in_world = frame.rotation * axis;
+    // A unit vector again: what rounding takes off a rotation would come back twice in every pose it makes.
+    let in_world = Unit::new_normalize(frame.rotation * axis.into_inner());
     // Carrying the ball's side turns it the other way about the port.
     let signed = if side.module == point.module { angle } else { -angle };
     let motion = Motion::Rotation { centre: centre.translation.vector, axis: in_world, angle: signed };
