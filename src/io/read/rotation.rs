@@ -12,9 +12,9 @@ use crate::spatial::{Rotation, Vec3};
 /// say: six digits written by hand pass, a forgotten component does not.
 const UNIT: f64 = 1e-6;
 
-/// Up to this distance from unit length, a few roundings, normalising again
+/// Up to this distance from unit length, the roundings of a chain of turns, normalising again
 /// would only change the last bits, and what is written could not be read back equal.
-const ROUNDING: f64 = 4.0 * f64::EPSILON;
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// The rotation of a quaternion `[x, y, z, w]`, normalised.
 pub(super) fn rotation(xyzw: [Real; 4], place: &Place<'_>, findings: &mut Findings) -> Rotation {
