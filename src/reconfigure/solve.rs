@@ -28,8 +28,8 @@ use super::trace::Trace;
 /// # Guarantees
 /// - Every plan returned has been proved stable in all sampled transient states, with
 ///   at least the required margin.
-/// - [`Outcome::Solved`]: no plan of this action set is better, by more than [`MARGIN_TOLERANCE`](super::MARGIN_TOLERANCE).
-/// - [`Outcome::Impossible`]: there is no plan in this action set.
+/// - [`Outcome::Solved`](super::Outcome::Solved): no plan of this action set is better, by more than [`MARGIN_TOLERANCE`](super::MARGIN_TOLERANCE).
+/// - [`Outcome::Impossible`](super::Outcome::Impossible): there is no plan in this action set.
 /// - The result depends neither on threads nor on time, unless a time limit or a
 ///   cancellation ended the search.
 ///

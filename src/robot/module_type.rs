@@ -99,7 +99,7 @@ pub struct PortType {
     pub body: usize,
     /// Where on the body.
     pub place: PortPlace,
-    /// Its connector: index into [`Catalogue::connectors`]; `None` for a port that only
+    /// Its connector: index into [`Catalogue::connectors`](super::Catalogue::connectors); `None` for a port that only
     /// connectors of others hold on to.
     pub connector: Option<usize>,
 }
@@ -109,11 +109,11 @@ pub struct PortType {
 pub struct LatticeType {
     /// Edge length of a cell in m.
     pub pitch: f64,
-    /// Connector on every face: index into [`Catalogue::connectors`]. A patch
+    /// Connector on every face: index into [`Catalogue::connectors`](super::Catalogue::connectors). A patch
     /// connector without points takes the corners of the face it sits on.
     pub face: usize,
     /// Connector that holds the module at a shared edge while it pivots, z
-    /// along the edge: index into [`Catalogue::connectors`].
+    /// along the edge: index into [`Catalogue::connectors`](super::Catalogue::connectors).
     pub hinge: Option<usize>,
     /// Whether it can slide over the faces of two coplanar neighbours.
     pub slide: bool,

@@ -48,7 +48,8 @@ pub(super) fn start(world: &World<'_>, other: Option<&World<'_>>, findings: &mut
     build::build(world, Arc::new(needs.catalogue()), surroundings, findings)
 }
 
-/// A world as the goal of a start, whose catalogue and surroundings hold. Modules of one type may swap places.
+/// A world as the goal of a start, whose catalogue and surroundings hold. Modules of one type may swap places, and where
+/// nothing holds or pulls the start, the goal may be met anywhere: the platform tells its worlds apart by shape only.
 pub(super) fn goal(world: &World<'_>, start: &Linkage, findings: &mut Findings) -> Option<Goal> {
     let surroundings = Surroundings {
         gravity: start.gravity,
@@ -57,8 +58,18 @@ pub(super) fn goal(world: &World<'_>, start: &Linkage, findings: &mut Findings) 
         require: start.require.clone(),
     };
     let goal = build::build(world, Arc::clone(&start.catalogue), surroundings, findings)?;
-    let matching = Matching { labelled: false, free_frame: false };
+    let matching = Matching { labelled: false, free_frame: is_free(start) };
     let mut linkage = matching::in_order_of(start, goal, matching, world.whole.place(), findings)?;
     linkage.loads.clone_from(&start.loads);
     Some(Goal { linkage, matching })
+}
+
+/// Whether nothing tells one place from another.
+fn is_free(start: &Linkage) -> bool {
+    let Environment { ground, obstacles, .. } = &start.environment;
+    start.gravity == Vec3::zeros()
+        && start.loads.is_empty()
+        && ground.is_none()
+        && obstacles.is_empty()
+        && !start.modules.iter().any(|module| module.fixed)
 }
