@@ -22,6 +22,10 @@ use super::saturated::{self, Saturated};
 /// Plans how to get from `start` to `goal`, like [`solve`](crate::reconfigure::solve()) does for lattices: with the same
 /// guarantees, by moves that turn one side of a joint or of a connection on a ball.
 ///
+/// What is proved is about the goal as it is told apart here: balls turned as it says, but for turns that keep their grid of
+/// directions, and loaded or fixed modules described as it describes them, not by their symmetries. The
+/// [`replay`](super::replay::replay) takes a goal as met wherever masses and ports are alike, which may take fewer moves.
+///
 /// # Errors
 /// [`Refusal`] for bad input.
 pub fn solve(
