@@ -162,6 +162,7 @@
 //! around the worst), not between them. One module, joint or connection moves at a time.
 
 pub mod certificate;
+pub mod generate;
 pub mod geometry;
 pub mod io;
 pub mod reconfigure;

@@ -5,22 +5,24 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Each layer with the layers that it may use.
-const LAYERS: [(&str, &[&str]); 7] = [
+const LAYERS: [(&str, &[&str]); 8] = [
     ("spatial", &[]),
     ("statics", &["spatial"]),
     ("certificate", &["spatial", "statics"]),
     ("robot", &["spatial", "statics"]),
     ("geometry", &["spatial", "robot"]),
     ("reconfigure", &["spatial", "statics", "robot", "geometry"]),
+    ("generate", &["spatial", "statics", "robot", "geometry", "reconfigure"]),
     ("io", &["spatial", "statics", "certificate", "robot", "geometry", "reconfigure"]),
 ];
 
 /// Libraries that only one layer may name.
-const HOMES: [(&str, &str); 8] = [
+const HOMES: [(&str, &str); 9] = [
     ("clarabel", "statics"),
     ("parry3d_f64", "geometry"),
     ("serde", "io"),
     ("serde_json", "io"),
+    ("rand_chacha", "generate"),
     ("schemars", "io"),
     ("sha2", "io"),
     ("stl_io", "io"),

@@ -33,6 +33,7 @@ mod solve;
 mod step;
 mod surface;
 mod trace;
+mod wander;
 mod worst;
 
 pub use action::Action;
@@ -44,6 +45,7 @@ pub use plan::{Bottleneck, Limit, Objective, Outcome, Plan, PlannedAction, Proof
 pub use refusal::{Impossible, Refusal, Which};
 pub use solve::solve;
 pub use step::Step;
+pub use wander::{Walk, wander};
 
 #[cfg(test)]
 mod tests;
