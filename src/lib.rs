@@ -169,6 +169,7 @@ pub mod reconfigure;
 pub mod robot;
 pub mod spatial;
 pub mod statics;
+pub mod suite;
 
 /// The README's examples, compiled.
 #[cfg(doctest)]

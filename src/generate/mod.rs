@@ -179,12 +179,31 @@ impl fmt::Display for Failure {
 impl std::error::Error for Failure {}
 
 impl Family {
+    /// Name as files write it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Cubes => "cubes",
+            Self::Freesn => "freesn",
+            Self::Rofi => "rofi",
+        }
+    }
+
     /// Fewest and most modules that are drawn.
     pub const fn sizes(self) -> [usize; 2] {
         match self {
             Self::Cubes => [2, 2000],
             Self::Freesn => [2, 100],
             Self::Rofi => [1, 50],
+        }
+    }
+}
+
+impl GoalKind {
+    /// Name as files write it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Grown => "grown",
+            Self::Walk => "walk",
         }
     }
 }

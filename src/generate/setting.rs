@@ -48,6 +48,20 @@ pub enum Setting {
     Rough,
 }
 
+impl Setting {
+    /// Name as files write it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Space => "space",
+            Self::Mounted => "mounted",
+            Self::Flat => "flat",
+            Self::Slope => "slope",
+            Self::Steps => "steps",
+            Self::Rough => "rough",
+        }
+    }
+}
+
 /// Surroundings, drawn.
 #[derive(Clone, Debug)]
 pub struct World {
