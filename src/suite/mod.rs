@@ -11,6 +11,8 @@ mod record;
 mod run;
 pub mod summary;
 pub mod survival;
+#[cfg(test)]
+mod tests;
 
 pub use job::{Case, Job, Limits, Planner, Suite};
 pub use judge::{Check, Flaw, judge};
