@@ -111,11 +111,10 @@ impl<S: Space> Search<'_, S> {
         let task = Task {
             from: visited.pop().expect("the start at least"),
             spent: self.cost(prefix),
-            floor: cells.floor,
-            below: u32::MAX,
             avoid: &visited,
             forbid: &forbidden,
             held_bytes: cells.bytes + cells.open.bytes(),
+            ..Task::whole(cells.floor, u32::MAX)
         };
         let run = self.run_shortest(&task);
         match run.limit {

@@ -13,6 +13,7 @@
 //! | [`Search::shortest`] | least cost with width at least a floor | lazy A*, re-opening |
 //! | [`Search::from_both_ends`] | the same, where goals are known | lazy bidirectional Dijkstra |
 //! | [`Search::margin`] | largest width, then least cost | both, one after the other |
+//! | [`Search::anytime_margin`] | the same, with better and better paths before | greedy, then both in turns |
 //! | [`Search::k_best`] | the K cheapest with width at least a floor | Yen with Lawler's cells |
 //!
 //! An [`Outcome`] says which of three things happened: solved and proved,
@@ -39,6 +40,7 @@
 pub mod algebra;
 pub mod toy;
 
+mod anytime;
 mod both_ends;
 mod brackets;
 mod budget;
@@ -55,6 +57,7 @@ mod space;
 mod tree;
 mod widest;
 
+pub use anytime::Shortest;
 pub use budget::{Budget, Limit, Statistics};
 pub use outcome::{Outcome, Path, Proof, Step};
 pub use progress::{Pass, Progress};

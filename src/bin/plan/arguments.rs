@@ -45,6 +45,10 @@ pub struct PlanningArguments {
     /// Seconds after which to stop with the best plan so far
     #[arg(long, value_name = "S", value_parser = seconds)]
     pub time_limit: Option<Duration>,
+    /// Memory not to exceed, in bytes or with K, M, G or T for powers of 1024; the search stops with the best plan so
+    /// far [default: half of the machine's memory]
+    #[arg(long, value_name = "SIZE", value_parser = crate::memory::size)]
+    pub memory_limit: Option<usize>,
     /// Threads for the oracle [default: all cores]; the plan does not depend on it
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,

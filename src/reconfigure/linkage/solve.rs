@@ -32,7 +32,7 @@ pub fn solve(
     start: &Linkage,
     goal: &Goal,
     options: &Options,
-    on_event: &mut dyn FnMut(&Event),
+    on_event: &mut dyn FnMut(&Event<Action, Held>),
 ) -> Result<Report<Action, Held>, Refusal> {
     let began = Instant::now();
     let required = options.min_margin.map_or(start.require.margin, |least| least.max(start.require.margin));
@@ -53,7 +53,7 @@ pub fn solve(
         Some(reason) => Report::impossible(options.objective, required, reason),
         None => {
             let space = Saturated::new(&domain, ends.width(), ends.at_most());
-            task.run_with(&space, &Plans(&domain), |search, floor| search.from_both_ends(floor), on_event)
+            task.run_with(&space, &Plans(&domain), &|search, floor| search.from_both_ends(floor), on_event)
         }
     };
     if let Some(fault) = domain.oracle.fault() {
