@@ -39,7 +39,7 @@ pub use action::Action;
 pub use engines::MARGIN_TOLERANCE;
 pub use layout::{Bond, Layout, Placed};
 pub use moves::{Ability, Motion, Move, Turn, fitting};
-pub use options::{Event, Options, Reduction};
+pub use options::{Event, Method, Options, Reduction};
 pub use plan::{Bottleneck, Limit, Objective, Outcome, Plan, PlannedAction, Proof, Report, Statistics};
 pub use refusal::{Impossible, Refusal, Which};
 pub use solve::solve;
