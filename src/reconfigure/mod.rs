@@ -42,7 +42,7 @@ pub use action::Action;
 pub use engines::MARGIN_TOLERANCE;
 pub use layout::{Bond, Layout, Placed};
 pub use moves::Move;
-pub use options::{Event, Known, News, Options, Pass, Reduction};
+pub use options::{Event, Known, Method, News, Options, Pass, Reduction};
 pub use plan::{Bottleneck, Limit, Objective, Outcome, Plan, PlannedAction, Proof, Report, Statistics};
 pub use refusal::{Impossible, Refusal, Which};
 pub use solve::solve;

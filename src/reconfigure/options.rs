@@ -21,6 +21,19 @@ pub enum Reduction {
     Primitive,
 }
 
+/// How plans of lattice robots are looked for. Robots of joints and struts are always searched exactly.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Method {
+    /// Exact search for as many movable modules as it is made for, decomposition beyond.
+    #[default]
+    Auto,
+    /// Search of the space of all states: plans with proofs of optimality.
+    Exact,
+    /// One module after another to where it is wanted: plans for hundreds of
+    /// modules, of which nothing is proved but that they are safe.
+    Decompose,
+}
+
 /// What is wanted and what may be spent. The default asks for the one plan of
 /// the largest margin, without a limit.
 ///
@@ -50,6 +63,10 @@ pub struct Options {
     pub ignore_stability: bool,
     /// What the search goes by.
     pub reduction: Reduction,
+    /// How plans are looked for.
+    pub method: Method,
+    /// Seed of a decomposition's choices among equals; the exact search draws no random numbers.
+    pub seed: u64,
 }
 
 /// What a caller sees of a running search: what is new, and all that is known by then.

@@ -7,9 +7,9 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use steadfast::io::{Problem, read_problem};
-use steadfast::reconfigure::{Objective, Options, Outcome, Reduction, Refusal};
+use steadfast::reconfigure::{Method, Objective, Options, Outcome, Reduction, Refusal};
 
-use crate::arguments::{ObjectiveArgument, PlanningArguments};
+use crate::arguments::{ObjectiveArgument, PlannerArgument, PlanningArguments};
 use crate::exit::Exit;
 use crate::family::{Answer, Family};
 use crate::progress::ProgressLine;
@@ -106,6 +106,12 @@ fn search<F: Family>(arguments: &PlanningArguments, problem: &F) -> Result<Resul
         cancel: Some(cancelled_by_interrupt()?),
         ignore_stability: arguments.ignore_stability,
         reduction: if arguments.primitive { Reduction::Primitive } else { Reduction::Saturated },
+        method: match arguments.planner {
+            PlannerArgument::Auto => Method::Auto,
+            PlannerArgument::Exact => Method::Exact,
+            PlannerArgument::Decompose => Method::Decompose,
+        },
+        seed: arguments.seed,
         ..Options::default()
     };
     let threads = arguments.threads.map_or(0, usize::from);
