@@ -22,8 +22,9 @@ use super::saturated::{self, Saturated};
 /// Plans how to get from `start` to `goal`, like [`solve`](crate::reconfigure::solve()) does for lattices: with the same
 /// guarantees, by moves that turn one side of a joint or of a connection on a ball.
 ///
-/// What is proved is about the goal as it is told apart here: balls turned as it says, but for turns that keep their grid of
-/// directions, and loaded or fixed modules described as it describes them, not by their symmetries. The
+/// What is proved is about the goal as it is told apart here: up to the symmetries of modules, of loaded ones those that keep
+/// the loads' points, and up to those turns of balls that keep their grid of directions, which are all 24 of a cube where
+/// everything is turned by quarters. Other turns of a ball count, and fixed modules as they are described. The
 /// [`replay`](super::replay::replay) takes a goal as met wherever masses and ports are alike, which may take fewer moves.
 ///
 /// # Errors
