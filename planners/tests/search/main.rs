@@ -9,5 +9,6 @@ mod edge_cases;
 mod k_best;
 mod laziness;
 mod optimality;
+mod ranking;
 mod reference;
 mod sample;
