@@ -10,6 +10,8 @@ use crate::reconfigure::Objective;
 pub enum Planner {
     /// The default search, exact.
     Exact,
+    /// One module after another to where it is wanted, for many cubes; nothing is proved but that plans are safe.
+    Decompose,
     /// The search over single actions: the slow reference, for cubes.
     Primitive,
     /// By geometry alone, as other planners do. Its plans are replayed to see which of them break.
@@ -160,13 +162,11 @@ impl Job {
 }
 
 impl Planner {
-    /// All of them.
-    pub const ALL: [Self; 3] = [Self::Exact, Self::Primitive, Self::IgnoreStability];
-
     /// Name as files write it.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Exact => "exact",
+            Self::Decompose => "decompose",
             Self::Primitive => "primitive",
             Self::IgnoreStability => "ignore-stability",
         }

@@ -5,7 +5,9 @@ use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 use crate::generate::{Generated, Pair, generate};
-use crate::reconfigure::{Event, Limit, Options, Outcome, Plan, Reduction, Refusal, Report, linkage, solve};
+use crate::reconfigure::{
+    Event, Limit, Method, News, Options, Outcome, Plan, Proof, Reduction, Refusal, Report, Statistics, linkage, solve,
+};
 
 use super::job::{Job, Planner};
 use super::plan::AnyPlan;
@@ -24,6 +26,10 @@ pub struct Run {
 pub struct Watch<'a> {
     /// Told when planning begins, and whenever something becomes known that was not.
     pub on_point: &'a mut dyn FnMut(&Point),
+    /// Given every plan that is better than those before it, as the answer of a search that was cut off.
+    pub on_plan: &'a mut dyn FnMut(&Pair, &AnyPlan),
+    /// Measures the memory in use in bytes, for a job that has a process to itself.
+    pub measure_bytes: Option<fn() -> Option<usize>>,
     /// Set it from any thread to stop.
     pub cancel: Option<Arc<AtomicBool>>,
 }
@@ -35,49 +41,93 @@ pub fn run(job: &Job, watch: &mut Watch<'_>) -> Run {
         Ok(Generated { pair, .. }) => pair,
         Err(failure) => return Run { record: refused(job, failure.to_string()), answer: None },
     };
-    let began = Instant::now();
-    let nothing = Point { seconds: 0.0, margin: None, moves: None, margin_at_most: f64::INFINITY, moves_at_least: 0 };
-    (watch.on_point)(&nothing);
-    let mut trace = vec![nothing];
-    let mut on_event = |event: &Event| {
-        let point = point(event, began);
-        let last = trace.last().copied().unwrap_or(nothing);
-        if (Point { seconds: point.seconds, ..last }) != point {
-            (watch.on_point)(&point);
-            trace.push(point);
-        }
-    };
     let options = Options {
         objective: job.objective,
         min_margin: Some(job.min_margin),
         time_limit: Some(job.time),
         max_bytes: usize::try_from(job.bytes).ok(),
+        measure_bytes: watch.measure_bytes,
         cancel: watch.cancel.clone(),
         ignore_stability: job.planner == Planner::IgnoreStability,
         reduction: if job.planner == Planner::Primitive { Reduction::Primitive } else { Reduction::Saturated },
+        method: if job.planner == Planner::Decompose { Method::Decompose } else { Method::Exact },
         ..Options::default()
     };
+    let mut diary = Diary::new(job, watch);
     let answer = match &pair {
-        Pair::Lattice { start, goal } => solve(start, goal, &options, &mut on_event)
-            .map(|report| (base(job, &report), AnyPlan::Lattice(report.into()))),
-        Pair::Linkage { start, goal } => linkage::solve(start, goal, &options, &mut on_event)
-            .map(|report| (base(job, &report), AnyPlan::Linkage(report.into()))),
+        Pair::Lattice { start, goal } => {
+            let on_event =
+                &mut |event: &Event| diary.note(event, &mut |report| (&pair, AnyPlan::Lattice(report.into())));
+            solve(start, goal, &options, on_event).map(|report| (base(job, &report), AnyPlan::Lattice(report.into())))
+        }
+        Pair::Linkage { start, goal } => {
+            let on_event =
+                &mut |event: &Event<_, _>| diary.note(event, &mut |report| (&pair, AnyPlan::Linkage(report.into())));
+            linkage::solve(start, goal, &options, on_event)
+                .map(|report| (base(job, &report), AnyPlan::Linkage(report.into())))
+        }
     };
+    let trace = diary.trace;
     match answer {
         Ok((record, answer)) => Run { record: Record { trace, ..record }, answer: Some((pair, answer)) },
         Err(refusal) => Run { record: refused(job, Refusal::to_string(&refusal)), answer: None },
     }
 }
 
-/// What a search knows at the moment of an event.
-fn point(event: &Event, began: Instant) -> Point {
-    let progress = &event.progress;
-    Point {
-        seconds: began.elapsed().as_secs_f64(),
-        margin: progress.best_width.filter(|width| width.is_finite()),
-        moves: progress.best_cost,
-        margin_at_most: progress.width_at_most,
-        moves_at_least: progress.cost_at_least,
+/// What became known of a job so far.
+struct Diary<'a, 'b> {
+    job: &'a Job,
+    watch: &'a mut Watch<'b>,
+    began: Instant,
+    trace: Vec<Point>,
+}
+
+impl<'a, 'b> Diary<'a, 'b> {
+    fn new(job: &'a Job, watch: &'a mut Watch<'b>) -> Self {
+        let nothing =
+            Point { seconds: 0.0, margin: None, moves: None, margin_at_most: f64::INFINITY, moves_at_least: 0 };
+        (watch.on_point)(&nothing);
+        Self { job, watch, began: Instant::now(), trace: vec![nothing] }
+    }
+
+    /// Notes an event, if it says anything new.
+    fn note<'p, A: Clone, C: Clone>(
+        &mut self,
+        event: &Event<A, C>,
+        any: &mut dyn FnMut(Report<A, C>) -> (&'p Pair, AnyPlan),
+    ) {
+        let seconds = self.began.elapsed().as_secs_f64();
+        let known = &event.known;
+        let point = Point {
+            seconds,
+            margin: known.margin,
+            moves: known.moves,
+            margin_at_most: known.margin_at_most,
+            moves_at_least: known.moves_at_least,
+        };
+        if self.trace.last().is_none_or(|last| Point { seconds, ..*last } != point) {
+            (self.watch.on_point)(&point);
+            self.trace.push(point);
+        }
+        if let News::Plan(plan) = &event.news {
+            let (pair, answer) = any(self.so_far(plan, &point));
+            (self.watch.on_plan)(pair, &answer);
+        }
+    }
+
+    /// A plan as the answer of a search that was cut off there.
+    fn so_far<A: Clone, C: Clone>(&self, plan: &Plan<A, C>, point: &Point) -> Report<A, C> {
+        let Point { seconds, margin_at_most, moves_at_least, .. } = *point;
+        Report {
+            outcome: Outcome::OutOfBudget(Limit::Cancelled),
+            objective: self.job.objective,
+            required: (self.job.planner != Planner::IgnoreStability).then_some(self.job.min_margin),
+            plan: Some(plan.clone()),
+            alternatives: Vec::new(),
+            alternatives_cut_by: None,
+            proof: Proof { optimal: false, margin_at_most, moves_at_least },
+            statistics: Statistics { seconds, ..Statistics::default() },
+        }
     }
 }
 
@@ -125,7 +175,7 @@ impl Record {
             check: None,
             margin_at_most: last.map_or(f64::INFINITY, |point| point.margin_at_most),
             moves_at_least: last.map_or(0, |point| point.moves_at_least),
-            statistics: crate::reconfigure::Statistics::default(),
+            statistics: Statistics::default(),
             rungs: Vec::new(),
             peak_bytes: None,
             trace,

@@ -22,7 +22,7 @@ fn job(seed: u64, planner: Planner) -> Job {
 }
 
 fn quietly(job: &Job) -> Run {
-    run(job, &mut Watch { on_point: &mut |_| {}, cancel: None })
+    run(job, &mut Watch { on_point: &mut |_| {}, on_plan: &mut |_, _| {}, measure_bytes: None, cancel: None })
 }
 
 #[test]
@@ -59,7 +59,9 @@ fn a_job_ends_within_its_time_and_says_what_became_known() {
     let mut seen = Vec::new();
     let job = Job { time: Duration::from_millis(1), objective: Objective::Margin, ..job(3, Planner::Exact) };
     let job = Job { request: Request { modules: 8, difficulty: None, ..job.request }, ..job };
-    let run = run(&job, &mut Watch { on_point: &mut |point| seen.push(*point), cancel: None });
+    let mut on_point = |point: &Point| seen.push(*point);
+    let run =
+        run(&job, &mut Watch { on_point: &mut on_point, on_plan: &mut |_, _| {}, measure_bytes: None, cancel: None });
     assert_eq!(run.record.ending, Ending::Stopped(Limit::Deadline));
     assert_eq!(seen, run.record.trace);
     assert_eq!(seen[0].seconds, 0.0);

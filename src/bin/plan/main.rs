@@ -14,6 +14,7 @@ mod files;
 mod generate;
 mod gives_way;
 mod load_range;
+mod memory;
 mod motion_range;
 mod order;
 mod output;

@@ -91,7 +91,7 @@ fn check(case: &Case, place: &Place<'_>, findings: &mut Findings) {
         );
     }
     if case.family != Family::Cubes
-        && let Some(index) = case.planners.iter().position(|planner| *planner == Planner::Primitive)
+        && let Some(index) = case.planners.iter().position(|p| matches!(p, Planner::Primitive | Planner::Decompose))
     {
         let message = "this planner is for cubes only";
         let hint = "choose \"exact\"".to_string();
@@ -135,6 +135,7 @@ fn objective(wire: wire::Objective) -> Objective {
 fn planner(wire: wire::PlannerName) -> Planner {
     match wire {
         wire::PlannerName::Exact => Planner::Exact,
+        wire::PlannerName::Decompose => Planner::Decompose,
         wire::PlannerName::Primitive => Planner::Primitive,
         wire::PlannerName::IgnoreStability => Planner::IgnoreStability,
     }

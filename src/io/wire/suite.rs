@@ -152,6 +152,8 @@ pub(crate) enum GoalOrigin {
 pub(crate) enum PlannerName {
     /// The default search.
     Exact,
+    /// One module after another, for many cubes.
+    Decompose,
     /// The search over single actions, for cubes.
     Primitive,
     /// By geometry alone.

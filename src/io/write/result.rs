@@ -85,6 +85,7 @@ fn asked(job: &Job) -> wire::Asked {
         },
         planner: match job.planner {
             Planner::Exact => wire::PlannerName::Exact,
+            Planner::Decompose => wire::PlannerName::Decompose,
             Planner::Primitive => wire::PlannerName::Primitive,
             Planner::IgnoreStability => wire::PlannerName::IgnoreStability,
         },

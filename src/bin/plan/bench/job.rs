@@ -13,7 +13,7 @@ use steadfast::suite::{AnyPlan, Job, Run, Watch, run as run_job};
 
 use super::directory::plan_path;
 use crate::exit::Exit;
-use crate::{files, output};
+use crate::{files, memory, output};
 
 /// Address space that a process takes beyond what it allocates: code, stacks, the allocator's arenas.
 #[cfg(unix)]
@@ -42,10 +42,21 @@ pub fn run(jobs: &[Job], name: &str, folder: &Path) -> io::Result<Exit> {
             say(&line);
         }
     };
-    let Run { mut record, answer } =
-        run_job(job, &mut Watch { on_point: &mut on_point, cancel: Some(Arc::clone(&cancel)) });
+    // The best plan so far is on file, whatever becomes of this process.
+    let mut on_plan = |pair: &Pair, answer: &AnyPlan| {
+        if let Ok(text) = document(pair, answer) {
+            let _ = files::save(&plan_path(folder, name), &text);
+        }
+    };
+    let mut watch = Watch {
+        on_point: &mut on_point,
+        on_plan: &mut on_plan,
+        measure_bytes: Some(memory::in_use),
+        cancel: Some(Arc::clone(&cancel)),
+    };
+    let Run { mut record, answer } = run_job(job, &mut watch);
     if let Some((pair, answer)) = answer.filter(|_| record.found.is_some()) {
-        match document(pair, &answer) {
+        match document(&pair, &answer) {
             Ok(text) => files::save(&plan_path(folder, name), &text)?,
             Err(trouble) => {
                 output::message(&format!("bug: the plan cannot be written: {trouble}"))?;
@@ -64,13 +75,15 @@ pub fn run(jobs: &[Job], name: &str, folder: &Path) -> io::Result<Exit> {
     Ok(Exit::Yes)
 }
 
-fn document(pair: Pair, answer: &AnyPlan) -> Result<String, Unwritable> {
+fn document(pair: &Pair, answer: &AnyPlan) -> Result<String, Unwritable> {
     match (pair, answer) {
         (Pair::Lattice { start, goal }, AnyPlan::Lattice(report)) => {
-            write_plan(&PlanDocument::new(LatticeProblem { start, goal }, report))
+            let problem = LatticeProblem { start: start.clone(), goal: goal.clone() };
+            write_plan(&PlanDocument::new(problem, report))
         }
         (Pair::Linkage { start, goal }, AnyPlan::Linkage(report)) => {
-            write_linkage_plan(&PlanDocument::new(LinkageProblem { start, goal }, report))
+            let problem = LinkageProblem { start: start.clone(), goal: goal.clone() };
+            write_linkage_plan(&PlanDocument::new(problem, report))
         }
         (Pair::Lattice { .. }, AnyPlan::Linkage(_)) | (Pair::Linkage { .. }, AnyPlan::Lattice(_)) => {
             unreachable!("an answer is for its own problem")
