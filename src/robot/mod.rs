@@ -18,6 +18,7 @@ mod module_type;
 mod module_type_check;
 mod occupancy;
 mod problem;
+mod requirement;
 mod shape;
 mod terrain;
 #[cfg(test)]
@@ -25,12 +26,13 @@ mod tests;
 
 pub use built_in::{BUILT_IN, rofi};
 pub use catalogue::Catalogue;
-pub use configuration::{Configuration, FaceConnection, Goal, Matching, Module, ModuleLoad, Port, Requirement};
+pub use configuration::{Configuration, FaceConnection, Goal, Matching, Module, ModuleLoad, Port};
 pub use environment::{Environment, Ground, Obstacle};
 pub use hull::{Hull, HullFace};
 pub use lattice::{Cell, Face, Orientation, Placement, neighbour};
 pub use module_type::{BodyType, JointType, LatticeType, ModuleType, PortPlace, PortType};
 pub use occupancy::Occupancy;
 pub use problem::{Fault, Part, Problem};
+pub use requirement::{Region, Requirement};
 pub use shape::{LARGEST, Shape, ShapeFault};
 pub use terrain::{HeightField, MOST_HEIGHTS, MOST_TRIANGLES, Mesh, Terrain};

@@ -32,7 +32,7 @@ pub(super) use check::{
 };
 pub(super) use configuration::{
     CatalogueRef, Configuration, ConfigurationFormat, Connections, Environment, FrameMatch, Ground, Match, Module,
-    ModuleLoad, ModuleMatch, Obstacle, PairConnection, Require, RolledConnection,
+    ModuleLoad, ModuleMatch, Obstacle, PairConnection, Region, Require, RolledConnection,
 };
 pub(super) use connector::Connector;
 pub(super) use errors::{Errors, ErrorsFormat, FileError};

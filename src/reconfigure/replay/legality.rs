@@ -158,7 +158,11 @@ fn pivot(before: &Configuration, module: usize, support: usize, to: Cell) -> Res
 
 fn free_module(before: &Configuration, module: usize) -> Result<&Module, Fault> {
     let mover = &before.modules[module];
-    if mover.fixed { Err(Fault::FixedModule) } else { Ok(mover) }
+    match mover.fixed {
+        true => Err(Fault::FixedModule),
+        false if before.require.stay.contains(&module) => Err(Fault::MustStay),
+        false => Ok(mover),
+    }
 }
 
 /// The face whose normal leads from one cell to the other, if they are neighbours.
