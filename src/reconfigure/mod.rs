@@ -22,6 +22,7 @@ mod local;
 mod moves;
 mod options;
 mod oracle;
+pub mod partial_order;
 mod plan;
 mod primitive;
 mod problem;
