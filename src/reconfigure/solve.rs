@@ -142,10 +142,12 @@ impl<S: Space, F: Fn(&[S::Action]) -> Vec<Step>> Translation<S> for Plans<'_, F>
 
     /// The moves of a plan, up to the order of independent ones.
     fn key(&self, path: &[S::Action]) -> Trace {
-        Trace::new((self.steps)(path).iter().filter_map(|step| match step {
+        let steps = (self.steps)(path);
+        let moves = steps.iter().filter_map(|step| match step {
             Step::Move(step) => Some(*step),
             Step::Attach(_) | Step::Detach(_) => None,
-        }))
+        });
+        Trace::new(moves, |step| self.domain.problem.needs(step))
     }
 
     fn plan(&self, path: &[S::Action]) -> Plan {

@@ -82,9 +82,10 @@ impl Family for LatticeProblem {
         let id = |module: usize| &self.start.modules[module].id;
         match action {
             Action::Attach(pair) | Action::Detach(pair) => format!("{} {}", action.kind(), faces(&self.start, pair)),
-            Action::Slide { module, to } => format!("slide  {} to {}", id(*module), cell(*to)),
-            Action::Pivot { module, support, to } => {
-                format!("pivot  {} about {} to {}", id(*module), id(*support), cell(*to))
+            Action::Move { motion, module, support, to } => {
+                let motion = &self.start.catalogue.motions[usize::from(*motion)].name;
+                let about = support.map_or_else(String::new, |support| format!("about {} ", id(support)));
+                format!("{motion:<6} {} {about}to {}", id(*module), cell(*to))
             }
         }
     }
