@@ -5,13 +5,14 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Each layer with the layers that it may use.
-const LAYERS: [(&str, &[&str]); 7] = [
+const LAYERS: [(&str, &[&str]); 8] = [
     ("spatial", &[]),
     ("statics", &["spatial"]),
     ("certificate", &["spatial", "statics"]),
     ("robot", &["spatial", "statics"]),
     ("geometry", &["spatial", "robot"]),
     ("reconfigure", &["spatial", "statics", "robot", "geometry"]),
+    ("schedule", &["spatial", "statics", "robot", "geometry", "reconfigure"]),
     ("io", &["spatial", "statics", "certificate", "robot", "geometry", "reconfigure"]),
 ];
 

@@ -9,20 +9,21 @@ use serde_json::Value;
 use super::{layout, wire};
 
 /// The formats that have a schema.
-const NAMES: [&str; 10] = [
+const NAMES: [&str; 11] = [
     "structure",
     "catalogue",
     "configuration",
     "plan",
     "check",
     "load-range",
+    "partial-order",
     "certificate",
     "errors",
     "rofi-world",
     "rofi-voxels",
 ];
 
-static SCHEMAS: LazyLock<[Value; 10]> = LazyLock::new(|| {
+static SCHEMAS: LazyLock<[Value; 11]> = LazyLock::new(|| {
     [
         generate::<wire::Structure>(),
         generate::<wire::Catalogue>(),
@@ -30,6 +31,7 @@ static SCHEMAS: LazyLock<[Value; 10]> = LazyLock::new(|| {
         generate::<wire::Plan>(),
         generate::<wire::Check>(),
         generate::<wire::LoadRange>(),
+        generate::<wire::PartialOrder>(),
         generate::<wire::Certificate>(),
         generate::<wire::Errors>(),
         generate::<wire::RofiWorld>(),

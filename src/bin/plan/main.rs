@@ -10,11 +10,13 @@ mod exit;
 mod explain;
 mod family;
 mod files;
+mod gantt;
 mod gives_way;
 mod load_range;
 mod motion_range;
 mod order;
 mod output;
+mod parallel;
 mod polar_map;
 mod progress;
 mod schema;
@@ -39,6 +41,7 @@ fn main() -> ExitCode {
         (Some(Command::MotionRange(range)), _) => motion_range::run(&range),
         (Some(Command::Convert(convert)), _) => convert::run(&convert),
         (Some(Command::LoadRange(range)), _) => load_range::run(&range),
+        (Some(Command::Parallel(parallel)), _) => parallel::run(&parallel),
         (Some(Command::Schema(schema)), _) => schema::run(&schema),
         (None, Some(planning)) => search::run(&planning),
         (None, None) => {

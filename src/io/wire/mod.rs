@@ -15,6 +15,7 @@ mod load_range;
 mod motion;
 mod number;
 mod outcome;
+mod partial_order;
 mod plan;
 mod rofi;
 mod structure;
@@ -40,6 +41,7 @@ pub(super) use load_range::{Failure, LoadRange, LoadRangeFormat, RangeEnd, Range
 pub(super) use motion::{Edge, Stencil};
 pub(super) use number::{AngleRange, Bound, Limit, NonNegative, Positive, Real, reals};
 pub(super) use outcome::{Impossible, Outcome, StoppedBy, Which};
+pub(super) use partial_order::{CheckedMoments, OrderedAction, PartialOrder, PartialOrderFormat, Wait};
 pub(super) use plan::{Alternative, Bottleneck, Bracket, Objective, Plan, PlanFormat, Proof, Statistics};
 pub(super) use rofi::{
     ComponentOf, CoordinateAxis, Direction, DockOf, IdentityTransform, ModuleJoint, NameOrNumber, PlacingJoint,

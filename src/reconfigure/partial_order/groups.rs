@@ -40,7 +40,7 @@ impl Group {
             let kind = match action {
                 Action::Attach(_) => Kind::Attach,
                 Action::Detach(_) => Kind::Detach,
-                Action::Slide { module, .. } | Action::Pivot { module, .. } => Kind::Move { module },
+                Action::Move { module, .. } => Kind::Move { module },
             };
             match groups.last_mut() {
                 Some(last) if last.kind == kind && last.moving().is_none() => {
@@ -70,8 +70,7 @@ impl Group {
     fn names(&self, module: usize) -> bool {
         self.actions.iter().any(|action| match *action {
             Action::Attach(connection) | Action::Detach(connection) => connection.modules().contains(&module),
-            Action::Slide { module: own, .. } => own == module,
-            Action::Pivot { module: own, support, .. } => own == module || support == module,
+            Action::Move { module: own, support, .. } => own == module || support == Some(module),
         })
     }
 }

@@ -347,7 +347,9 @@ impl<'a> Growth<'a> {
     /// The arrows between actions that do not follow from others.
     fn graph(&self) -> DiGraph<(), Because> {
         let mut graph = DiGraph::with_capacity(self.actions, self.actions);
-        (0..self.actions).for_each(|_| drop(graph.add_node(())));
+        for _ in 0..self.actions {
+            graph.add_node(());
+        }
         for (&(from, to), because) in &self.reasons {
             let follows = (from + 1..to).any(|between| self.before[to][between] && self.before[between][from]);
             if follows {

@@ -15,11 +15,11 @@ use crate::statics::{Bracket, Question, assess};
 
 use super::Because;
 
-/// Steps of a slide before refinement, as the planner samples one.
-const SLIDE_STEPS: u32 = 8;
+/// Distance in cells between the samples of a translation before refinement, as the planner samples one.
+const CELL_STEP: f64 = 1.0 / 8.0;
 
-/// Around the worst sample, a slide is refined until samples are closer than this phase.
-const SLIDE_RESOLUTION: f64 = 1.0 / 64.0;
+/// Around the worst sample, a translation is refined until samples are closer than this, in cells.
+const CELL_RESOLUTION: f64 = 1.0 / 64.0;
 
 /// Angle in degrees between the samples of a turn before refinement.
 const TURN_STEP: f64 = 15.0;
@@ -125,8 +125,9 @@ impl Ways<'_> {
             let moving: Vec<Moving> = moving.collect();
             self.margin(state, &Moment { placements: &placements, moving: &moving, engaged: &engaged })
         };
+        let samplings: Vec<Sampling> = paths.iter().map(|path| Sampling::of(path, state.pitch())).collect();
         let mut samples: Vec<Sample> = Vec::new();
-        let mut next = grid(paths);
+        let mut next = grid(&samplings);
         while !next.is_empty() {
             for together in next.chunks(4 * rayon::current_num_threads().max(1)) {
                 let asked: Vec<_> = together.par_iter().map(|phases| ask(phases)).collect();
@@ -137,7 +138,7 @@ impl Ways<'_> {
                     }
                 }
             }
-            next = refined(paths, &samples);
+            next = refined(&samplings, &samples);
         }
         Ok(Ok(samples.iter().map(|(_, margin)| *margin).reduce(Bracket::min).expect("a grid has samples")))
     }
@@ -158,21 +159,28 @@ impl Ways<'_> {
     }
 }
 
-/// Equal steps in which a way is sampled, and the distance in phase down to which the worst sample is refined.
-fn sampling(path: &Path) -> (u32, f64) {
-    match &path.motion {
-        Motion::Translation { .. } => (SLIDE_STEPS, SLIDE_RESOLUTION),
-        Motion::Rotation { angle, .. } => {
-            let degrees = angle.abs().to_degrees();
-            ((degrees / TURN_STEP).round().max(1.0) as u32, TURN_RESOLUTION / degrees)
-        }
+/// How a way is sampled.
+#[derive(Clone, Copy, Debug)]
+struct Sampling {
+    /// Equal steps before refinement.
+    steps: u32,
+    /// The distance in phase down to which the worst sample is refined.
+    resolution: f64,
+}
+
+impl Sampling {
+    fn of(path: &Path, pitch: f64) -> Self {
+        let (length, step, resolution) = match &path.motion {
+            Motion::Translation { by } => (by.norm() / pitch, CELL_STEP, CELL_RESOLUTION),
+            Motion::Rotation { angle, .. } => (angle.abs().to_degrees(), TURN_STEP, TURN_RESOLUTION),
+        };
+        Self { steps: (length / step).round().max(1.0) as u32, resolution: resolution / length }
     }
 }
 
 /// The product of the phases of all paths before refinement.
-fn grid(paths: &[Path]) -> Vec<Vec<f64>> {
-    paths.iter().fold(vec![Vec::new()], |grid, path| {
-        let (steps, _) = sampling(path);
+fn grid(samplings: &[Sampling]) -> Vec<Vec<f64>> {
+    samplings.iter().fold(vec![Vec::new()], |grid, &Sampling { steps, .. }| {
         let extended = |phases: &Vec<f64>| -> Vec<Vec<f64>> {
             let phase = |i: u32| phases.iter().copied().chain([f64::from(i) / f64::from(steps)]).collect();
             (0..=steps).map(phase).collect()
@@ -183,12 +191,11 @@ fn grid(paths: &[Path]) -> Vec<Vec<f64>> {
 
 /// What to ask next around the worst sample: half-way to the next samples along the phase of each path, where
 /// those are farther than the resolution.
-fn refined(paths: &[Path], samples: &[Sample]) -> Vec<Vec<f64>> {
+fn refined(samplings: &[Sampling], samples: &[Sample]) -> Vec<Vec<f64>> {
     let worst = samples.iter().min_by(|a, b| a.1.lower.total_cmp(&b.1.lower));
     let Some((worst, _)) = worst else { return Vec::new() };
     let mut next = Vec::new();
-    for (along, path) in paths.iter().enumerate() {
-        let (_, resolution) = sampling(path);
+    for (along, &Sampling { resolution, .. }) in samplings.iter().enumerate() {
         let in_line = samples
             .iter()
             .map(|(phases, _)| phases)

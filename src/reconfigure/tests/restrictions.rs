@@ -1,7 +1,7 @@
 //! Modules that may not move and regions that none may pass through: for the planner and for the replay.
 
 use crate::reconfigure::replay::{Fault, replay};
-use crate::reconfigure::{Impossible, Objective, Options, Outcome};
+use crate::reconfigure::{Action, Impossible, Objective, Options, Outcome};
 use crate::robot::Region;
 use crate::spatial::Vec3;
 
@@ -24,9 +24,7 @@ fn a_module_that_may_not_move_does_not_and_is_no_support_of_the_world() {
     start.require.stay = vec![1, 2];
     let report = plan(&start, &goal, &fewest_moves());
     let moved = solved(&report).actions.iter().filter_map(|planned| match planned.action {
-        crate::reconfigure::Action::Slide { module, .. } | crate::reconfigure::Action::Pivot { module, .. } => {
-            Some(module)
-        }
+        Action::Move { module, .. } => Some(module),
         _ => None,
     });
     assert!(moved.into_iter().all(|module| module != 1 && module != 2));
@@ -54,8 +52,7 @@ fn the_replay_rejects_what_is_forbidden() {
         forbidden.require.stay = vec![module];
         let faults = replay(&forbidden, &goal, plan, 0.0).unwrap().failures;
         let moves = plan.actions.iter().any(|planned| match planned.action {
-            crate::reconfigure::Action::Slide { module: m, .. }
-            | crate::reconfigure::Action::Pivot { module: m, .. } => m == module,
+            Action::Move { module: m, .. } => m == module,
             _ => false,
         });
         assert_eq!(faults.iter().any(|failure| failure.fault == Fault::MustStay), moves);
@@ -76,7 +73,7 @@ fn no_module_passes_a_forbidden_region() {
     let unrestricted = plan(&row().0, &goal, &fewest_moves());
     let through = replay(&start, &goal, solved(&unrestricted), 0.0).unwrap();
     let over_the_top = solved(&unrestricted).actions.iter().any(|planned| match planned.action {
-        crate::reconfigure::Action::Slide { to, .. } | crate::reconfigure::Action::Pivot { to, .. } => to[2] > 0,
+        Action::Move { to, .. } => to[2] > 0,
         _ => false,
     });
     assert_eq!(through.failures.iter().any(|f| f.fault == Fault::KeepOut { region: 0 }), over_the_top);
