@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 
 use steadfast::io::{SourceFile, no_references, read_problem};
 use steadfast::reconfigure::partial_order::{OrderOptions, partial_order};
-use steadfast::reconfigure::{Objective, Options, Outcome};
+use steadfast::reconfigure::{News, Objective, Options, Outcome};
 use steadfast::schedule::{Job, Problem, Robot, best, plan_batch, until, weaken_connector, without};
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -43,7 +43,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     let job = Job::start(problem.clone(), until(deadline, options.clone()));
     let canceller = job.canceller(); // for whoever sees that the robot is needed elsewhere
     for event in job.events() {
-        writeln!(out, "  {event:?}")?;
+        match event.news {
+            News::Plan(better) => writeln!(out, "  a plan of {} moves", better.moves)?,
+            News::Bound => writeln!(out, "  no plan has fewer than {} moves", event.known.moves_at_least)?,
+            News::Progress => {}
+        }
         if Instant::now() > deadline {
             canceller.cancel();
         }

@@ -150,4 +150,8 @@ impl Space for Saturated<'_> {
     fn heap_bytes(&self, state: &State) -> usize {
         size_of_val(state.layout.placed())
     }
+
+    fn memory_bytes(&self) -> usize {
+        self.domain.memory_bytes()
+    }
 }

@@ -5,10 +5,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Receiver};
 use std::thread::{self, JoinHandle};
 
-use crate::reconfigure::{Event, Options, Refusal};
+use crate::reconfigure::{Options, Refusal};
 
 use super::robot::Robot;
-use super::{Problem, ReportOf};
+use super::{EventOf, Problem, ReportOf};
 
 /// Stops a [`Job`] from any thread, as often as one likes.
 #[derive(Clone, Debug)]
@@ -24,7 +24,7 @@ impl Canceller {
 /// A problem that is being planned. Dropping it cancels it.
 #[derive(Debug)]
 pub struct Job<R: Robot> {
-    events: Receiver<Event>,
+    events: Receiver<EventOf<R>>,
     canceller: Canceller,
     thread: Option<JoinHandle<Result<ReportOf<R>, Refusal>>>,
 }
@@ -36,18 +36,18 @@ impl<R: Robot> Job<R> {
         let (sender, events) = mpsc::channel();
         let thread = thread::spawn(move || {
             // Nobody has to listen.
-            problem.plan(&options, &mut |event: &Event| sender.send(*event).unwrap_or_default())
+            problem.plan(&options, &mut |event| sender.send(event.clone()).unwrap_or_default())
         });
         Self { events, canceller: Canceller(flag), thread: Some(thread) }
     }
 
     /// What happens, as it happens; ends when planning does.
-    pub fn events(&self) -> impl Iterator<Item = Event> + '_ {
+    pub fn events(&self) -> impl Iterator<Item = EventOf<R>> + '_ {
         self.events.iter()
     }
 
     /// What has happened since the last call, without waiting.
-    pub fn new_events(&self) -> impl Iterator<Item = Event> + '_ {
+    pub fn new_events(&self) -> impl Iterator<Item = EventOf<R>> + '_ {
         self.events.try_iter()
     }
 

@@ -73,6 +73,9 @@ pub struct Problem<R> {
 /// What planning answers about a robot.
 pub type ReportOf<R> = Report<<R as Robot>::Action, <R as Robot>::Connection>;
 
+/// What a caller sees of planning for a robot.
+pub type EventOf<R> = Event<<R as Robot>::Action, <R as Robot>::Connection>;
+
 /// A plan of a robot.
 pub type PlanOf<R> = Plan<<R as Robot>::Action, <R as Robot>::Connection>;
 
@@ -102,7 +105,7 @@ impl<R: Robot> Problem<R> {
     ///
     /// # Errors
     /// [`Refusal`] for bad input.
-    pub fn plan(&self, options: &Options, on_event: &mut dyn FnMut(&Event)) -> Result<ReportOf<R>, Refusal> {
+    pub fn plan(&self, options: &Options, on_event: &mut dyn FnMut(&EventOf<R>)) -> Result<ReportOf<R>, Refusal> {
         R::solve(self, options, on_event)
     }
 
@@ -140,7 +143,7 @@ fn replay_lattice(problem: &Problem<Configuration>, plan: &Plan, required: f64) 
 fn solve_linkage(
     problem: &Problem<Linkage>,
     options: &Options,
-    on_event: &mut dyn FnMut(&Event),
+    on_event: &mut dyn FnMut(&EventOf<Linkage>),
 ) -> Result<ReportOf<Linkage>, Refusal> {
     let goal = parts::linkage::Goal { linkage: problem.goal.clone(), matching: problem.matching };
     linkage::solve(&problem.start, &goal, options, on_event)

@@ -10,7 +10,7 @@ use crate::reconfigure::{Action, Event, Options, Plan, Refusal, Report, assembly
 use crate::robot::linkage::{Linkage, MEETING};
 use crate::robot::{Catalogue, Configuration, FaceConnection, ModuleLoad, Requirement};
 
-use super::{PlanOf, Problem, ReportOf};
+use super::{EventOf, PlanOf, Problem, ReportOf};
 
 /// An action that is not legal where it should be taken.
 #[derive(Clone, Debug, PartialEq)]
@@ -77,7 +77,7 @@ pub trait Robot: Clone + Debug + PartialEq + Send + Sync + 'static {
     fn solve(
         problem: &Problem<Self>,
         options: &Options,
-        on_event: &mut dyn FnMut(&Event),
+        on_event: &mut dyn FnMut(&EventOf<Self>),
     ) -> Result<ReportOf<Self>, Refusal>;
 
     /// Checks a plan: [`Problem::replay`].
@@ -222,7 +222,7 @@ impl Robot for Linkage {
     fn solve(
         problem: &Problem<Self>,
         options: &Options,
-        on_event: &mut dyn FnMut(&Event),
+        on_event: &mut dyn FnMut(&EventOf<Self>),
     ) -> Result<Report<LinkageAction, Held>, Refusal> {
         super::solve_linkage(problem, options, on_event)
     }

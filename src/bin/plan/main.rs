@@ -13,6 +13,7 @@ mod files;
 mod gantt;
 mod gives_way;
 mod load_range;
+mod memory;
 mod motion_range;
 mod order;
 mod output;
