@@ -134,7 +134,7 @@ prop_compose! {
             environment: Environment { ground, obstacles, module_friction: module_friction.abs() },
             modules,
             connections: Vec::new(),
-            require: Requirement { margin, connected },
+            require: Requirement { margin, connected, ..Requirement::default() },
         };
         let mut engaged = engaged.into_iter().cycle();
         configuration.connections = configuration.touching_connections();

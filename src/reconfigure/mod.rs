@@ -23,6 +23,7 @@ mod local;
 mod moves;
 mod options;
 mod oracle;
+pub mod partial_order;
 mod plan;
 mod primitive;
 mod problem;

@@ -11,6 +11,7 @@ mod exit;
 mod explain;
 mod family;
 mod files;
+mod gantt;
 mod generate;
 mod gives_way;
 mod load_range;
@@ -18,6 +19,7 @@ mod memory;
 mod motion_range;
 mod order;
 mod output;
+mod parallel;
 mod polar_map;
 mod progress;
 mod schema;
@@ -44,6 +46,7 @@ fn main() -> ExitCode {
         (Some(Command::LoadRange(range)), _) => load_range::run(&range),
         (Some(Command::Generate(generate)), _) => generate::run(&generate),
         (Some(Command::Bench(bench)), _) => bench::run(&bench),
+        (Some(Command::Parallel(parallel)), _) => parallel::run(&parallel),
         (Some(Command::Schema(schema)), _) => schema::run(&schema),
         (None, Some(planning)) => search::run(&planning),
         (None, None) => {

@@ -15,6 +15,7 @@ mod load_range;
 mod motion;
 mod number;
 mod outcome;
+mod partial_order;
 mod plan;
 mod result;
 mod rofi;
@@ -33,7 +34,7 @@ pub(super) use check::{
 };
 pub(super) use configuration::{
     CatalogueRef, Configuration, ConfigurationFormat, Connections, Environment, FrameMatch, Ground, Match, Module,
-    ModuleLoad, ModuleMatch, Obstacle, PairConnection, Require, RolledConnection,
+    ModuleLoad, ModuleMatch, Obstacle, PairConnection, Region, Require, RolledConnection,
 };
 pub(super) use connector::Connector;
 pub(super) use errors::{Errors, ErrorsFormat, FileError};
@@ -42,6 +43,7 @@ pub(super) use load_range::{Failure, LoadRange, LoadRangeFormat, RangeEnd, Range
 pub(super) use motion::{Edge, Stencil};
 pub(super) use number::{AngleRange, Bound, Limit, NonNegative, Positive, Real, reals};
 pub(super) use outcome::{Impossible, Outcome, StoppedBy, Which};
+pub(super) use partial_order::{CheckedMoments, OrderedAction, PartialOrder, PartialOrderFormat, Wait};
 pub(super) use plan::{Alternative, Bottleneck, Bracket, Objective, Plan, PlanFormat, Proof, Statistics};
 pub(super) use result::{Asked, FoundPlan, JobEnding, JobResult, PlanFlaw, ReplayOf, ResultFormat, TracePoint};
 pub(super) use rofi::{
