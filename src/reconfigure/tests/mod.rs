@@ -5,6 +5,7 @@ mod heuristics;
 mod motions;
 mod outcomes;
 mod reports;
+mod stencils;
 mod tampering;
 
 use std::sync::Arc;
