@@ -97,6 +97,11 @@ impl<'a, S: Space> Graph<'a, S> {
         self.edges[from as usize].as_ref().expect("arrows leave expanded states")
     }
 
+    /// Upper bounds on the widths of all transitions that are known.
+    pub fn known_widths(&self) -> impl Iterator<Item = f64> {
+        self.edges.iter().flatten().flatten().map(|edge| edge.width.upper)
+    }
+
     /// Generates the transitions out of a state, once.
     pub fn expand(&mut self, from: StateId) {
         if self.edges[from as usize].is_none() {

@@ -77,11 +77,13 @@ impl<'a, S: Space> Search<'a, S> {
 
     /// Books what has been done, with the memory of queues and labels.
     pub(crate) fn book(&mut self, open_bytes: usize) {
+        let counted = || self.graph.bytes() + open_bytes + self.graph.space().memory_bytes();
+        let bytes = self.monitor.measured().unwrap_or_else(counted);
         let statistics = &mut self.monitor.progress.statistics;
         statistics.generated = self.graph.generated;
         statistics.certified = self.graph.certified;
         statistics.states = self.graph.states();
-        statistics.bytes = statistics.bytes.max(self.graph.bytes() + open_bytes);
+        statistics.bytes = statistics.bytes.max(bytes);
     }
 
     /// Books one more decision, and reports if it is time; says which limit is exceeded.

@@ -1,5 +1,5 @@
 //! JSON Schemas, made from the wire types: for users' editors, and for
-//! checking every file before it is decoded.
+//! checking every file before it is decoded. A suite is written in TOML, which has the same values.
 
 use std::sync::LazyLock;
 
@@ -9,7 +9,7 @@ use serde_json::Value;
 use super::{layout, wire};
 
 /// The formats that have a schema.
-const NAMES: [&str; 10] = [
+const NAMES: [&str; 12] = [
     "structure",
     "catalogue",
     "configuration",
@@ -17,12 +17,14 @@ const NAMES: [&str; 10] = [
     "check",
     "load-range",
     "certificate",
+    "suite",
+    "result",
     "errors",
     "rofi-world",
     "rofi-voxels",
 ];
 
-static SCHEMAS: LazyLock<[Value; 10]> = LazyLock::new(|| {
+static SCHEMAS: LazyLock<[Value; 12]> = LazyLock::new(|| {
     [
         generate::<wire::Structure>(),
         generate::<wire::Catalogue>(),
@@ -31,6 +33,8 @@ static SCHEMAS: LazyLock<[Value; 10]> = LazyLock::new(|| {
         generate::<wire::Check>(),
         generate::<wire::LoadRange>(),
         generate::<wire::Certificate>(),
+        generate::<wire::Suite>(),
+        generate::<wire::JobResult>(),
         generate::<wire::Errors>(),
         generate::<wire::RofiWorld>(),
         generate::<wire::VoxelWorld>(),

@@ -9,7 +9,7 @@ use crate::spatial::{Pose, Rotation, Vec3};
 use crate::statics::Bracket;
 
 use super::course::motion;
-use super::layout::{Bond, Layout};
+use super::layout::{Bond, Layout, Placed};
 use super::local::{Memo, Neighbourhood, plane};
 use super::moves::Move;
 use super::oracle::{Oracle, Worst};
@@ -48,6 +48,15 @@ impl<'a> Domain<'a> {
             at_rest: Memo::new(),
             at_most: Memo::new(),
         }
+    }
+
+    /// Approximate memory of all answers that are kept, in bytes.
+    pub fn memory_bytes(&self) -> usize {
+        let modules = self.problem.start().modules.len();
+        // Every module of a lattice has about two connections of its own, and a pivot a handful of neighbours.
+        let at_rest = modules * (size_of::<Placed>() + 2 * size_of::<Bond>());
+        let at_most = 8 * size_of::<(Cell, usize)>();
+        self.clear.bytes(0) + self.at_rest.bytes(at_rest) + self.at_most.bytes(at_most)
     }
 
     /// The moves that fit among the modules and hit neither ground nor

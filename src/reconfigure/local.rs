@@ -87,4 +87,11 @@ impl<K: Eq + Hash, V: Copy> Memo<K, V> {
         known().insert(key, answer);
         answer
     }
+
+    /// Approximate memory in bytes, where a key owns so much heap.
+    pub fn bytes(&self, heap_of_key: usize) -> usize {
+        let known = self.0.lock().expect("no thread panics while it holds the answers");
+        // Slots that are free, and a byte of control for each, are part of the table.
+        known.capacity() * (size_of::<(K, V)>() + 1) * 8 / 7 + known.len() * heap_of_key
+    }
 }

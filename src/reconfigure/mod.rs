@@ -15,6 +15,7 @@ mod course;
 mod domain;
 mod engines;
 mod goal;
+mod herald;
 mod heuristic;
 mod layout;
 pub mod linkage;
@@ -33,6 +34,7 @@ mod solve;
 mod step;
 mod surface;
 mod trace;
+mod wander;
 mod ways;
 mod worst;
 
@@ -41,11 +43,12 @@ pub use action::Action;
 pub use engines::MARGIN_TOLERANCE;
 pub use layout::{Bond, Layout, Placed};
 pub use moves::Move;
-pub use options::{Event, Options, Reduction};
+pub use options::{Event, Known, Method, News, Options, Pass, Reduction};
 pub use plan::{Bottleneck, Limit, Objective, Outcome, Plan, PlannedAction, Proof, Report, Statistics};
 pub use refusal::{Impossible, Refusal, Which};
 pub use solve::solve;
 pub use step::Step;
+pub use wander::{Walk, wander};
 pub use ways::{Ability, Way, fitting};
 
 #[cfg(test)]

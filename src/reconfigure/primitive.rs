@@ -105,4 +105,8 @@ impl Space for Primitive<'_> {
     fn heap_bytes(&self, state: &State) -> usize {
         size_of_val(state.layout.placed()) + size_of_val(&*state.bonds)
     }
+
+    fn memory_bytes(&self) -> usize {
+        self.domain.memory_bytes()
+    }
 }

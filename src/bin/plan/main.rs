@@ -4,14 +4,17 @@
 //! mechanics and no search; what it prints, the library has found.
 
 mod arguments;
+mod bench;
 mod check;
 mod convert;
 mod exit;
 mod explain;
 mod family;
 mod files;
+mod generate;
 mod gives_way;
 mod load_range;
+mod memory;
 mod motion_range;
 mod order;
 mod output;
@@ -39,6 +42,8 @@ fn main() -> ExitCode {
         (Some(Command::MotionRange(range)), _) => motion_range::run(&range),
         (Some(Command::Convert(convert)), _) => convert::run(&convert),
         (Some(Command::LoadRange(range)), _) => load_range::run(&range),
+        (Some(Command::Generate(generate)), _) => generate::run(&generate),
+        (Some(Command::Bench(bench)), _) => bench::run(&bench),
         (Some(Command::Schema(schema)), _) => schema::run(&schema),
         (None, Some(planning)) => search::run(&planning),
         (None, None) => {
