@@ -11,8 +11,9 @@
 //! | --- | --- | --- |
 //! | [`Search::widest`] | largest width | lazy best-first with the max-min algebra |
 //! | [`Search::shortest`] | least cost with width at least a floor | lazy A*, re-opening |
-//! | [`Search::from_both_ends`] | the same, where goals are known | lazy bidirectional Dijkstra |
+//! | [`Search::from_both_ends`] | the same, where goals are known | lazy bidirectional A* |
 //! | [`Search::margin`] | largest width, then least cost | both, one after the other |
+//! | [`Search::ascending`] | the same, with wider and wider paths before | a cheapest path for ever higher floors |
 //! | [`Search::k_best`] | the K cheapest with width at least a floor | Yen with Lawler's cells |
 //!
 //! An [`Outcome`] says which of three things happened: solved and proved,
@@ -39,6 +40,7 @@
 pub mod algebra;
 pub mod toy;
 
+mod ascent;
 mod both_ends;
 mod brackets;
 mod budget;
@@ -55,6 +57,7 @@ mod space;
 mod tree;
 mod widest;
 
+pub use ascent::Cheapest;
 pub use budget::{Budget, Limit, Statistics};
 pub use outcome::{Outcome, Path, Proof, Step};
 pub use progress::{Pass, Progress};

@@ -2,7 +2,7 @@
 
 use crate::algebra::Additive;
 use crate::budget::{Budget, Limit, Statistics};
-use crate::graph::{Arrow, Graph, START};
+use crate::graph::{Arrow, End, Graph, START};
 use crate::outcome::{Outcome, Path, Proof, Step};
 use crate::progress::{Monitor, Progress};
 use crate::space::Space;
@@ -95,18 +95,17 @@ impl<'a, S: Space> Search<'a, S> {
         self.monitor.begin(self.graph.cap(), self.graph.remaining(START));
     }
 
-    /// The path that a sequence of certified transitions makes.
-    pub(crate) fn path(&self, arrows: &[Arrow]) -> PathOf<S> {
-        let step = |&arrow: &Arrow| {
-            let edge = self.graph.edge(arrow);
-            Step {
-                action: edge.action.clone(),
-                to: self.graph.state(edge.to).clone(),
-                cost: edge.cost,
-                width: edge.width,
-            }
-        };
-        Path::new(arrows.iter().map(step).collect())
+    /// The path that a sequence of transitions makes, its widths as tight as they can be.
+    pub(crate) fn path(&mut self, arrows: &[Arrow]) -> PathOf<S> {
+        Path::new(arrows.iter().map(|&arrow| self.step(End::Start, arrow)).collect())
+    }
+
+    /// A transition of a path, its width as tight as it can be.
+    pub(crate) fn step(&mut self, end: End, arrow: Arrow) -> Step<S::State, S::Action> {
+        let width = self.graph.tighten(end, arrow);
+        let edge = self.graph.edge_seen_from(end, arrow);
+        let to = if end == End::Start { edge.to } else { arrow.from };
+        Step { action: edge.action.clone(), to: self.graph.state(to).clone(), cost: edge.cost, width }
     }
 
     /// What the bounds prove about a path, or about nothing found.

@@ -2,7 +2,7 @@
 
 use crate::algebra::{Additive, PathValue};
 use crate::budget::Limit;
-use crate::graph::{Arrow, DEAD_END, START};
+use crate::graph::{Arrow, DEAD_END, End, START};
 use crate::outcome::Outcome;
 use crate::progress::Pass;
 use crate::queue::Queue;
@@ -122,7 +122,7 @@ impl<S: Space> Search<'_, S> {
             if let Some(limit) = self.tick(open.bytes() + self.tree.bytes() + task.held_bytes) {
                 return ShortestRun { best: None, limit: Some(limit), cost_at_least };
             }
-            let width = self.graph.certify(arrow, task.floor);
+            let width = self.graph.decide(End::Start, arrow, task.floor);
             if !is_wide_enough(width.lower, task.floor) {
                 if is_wide_enough(width.upper, task.floor) {
                     undecided = undecided.min(estimate);

@@ -1,6 +1,7 @@
 //! The engines against unlike methods on explicit graphs.
 
 mod algebra;
+mod ascent;
 mod both_ends;
 mod brackets;
 mod budgets;
