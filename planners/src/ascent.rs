@@ -56,7 +56,7 @@ impl<'s, S: Space> Search<'s, S> {
                 }
             }
             let is_widest = found.width.lower >= self.tie(width_at_most);
-            break answer.limit().filter(|_| !is_widest);
+            break (!is_widest).then(|| answer.limit().unwrap_or(Limit::Precision));
         };
         let width_at_most = width_at_most.max(found.width.lower);
         let as_good = self.tie(width_at_most).min(found.width.lower).max(floor);

@@ -124,7 +124,10 @@ impl<S: Reversible> Search<'_, S> {
                 let Bridge { end, arrow, far } = both.bridges.pop().expect("it was seen").item;
                 let width = self.graph.decide(end, arrow, floor);
                 if is_wide_enough(width.lower, floor) {
-                    let path = self.joined(&both, end, arrow, far);
+                    let Some(path) = self.joined(&both, end, arrow, far) else {
+                        // It did not stand when it was looked at closely.
+                        return self.search_from_both_ends(floor);
+                    };
                     let limit = (proved < path.cost).then_some(Limit::Precision);
                     return Run { best: Some(path), limit, cost_at_least: proved, width_at_most: cap };
                 }
@@ -183,18 +186,15 @@ impl<S: Reversible> Search<'_, S> {
         }
     }
 
-    /// The path over a bridge.
-    fn joined(&mut self, both: &Both, end: End, arrow: Arrow, far: StateId) -> PathOf<S> {
+    /// The path over a bridge, if all of it stands when it is as tight as it can be.
+    fn joined(&mut self, both: &Both, end: End, arrow: Arrow, far: StateId) -> Option<PathOf<S>> {
         let (first, last) = if end == End::Start { (arrow.from, far) } else { (far, arrow.from) };
-        let mut steps = Vec::new();
-        for arrow in both.sides[End::Start as usize].labels.way_to(first) {
-            steps.push(self.step(End::Start, arrow));
-        }
-        steps.push(self.step(end, arrow));
-        for &arrow in both.sides[End::Goal as usize].labels.way_to(last).iter().rev() {
-            steps.push(self.step(End::Goal, arrow));
-        }
-        Path::new(steps)
+        let [start, goal] = &both.sides;
+        let before = start.labels.way_to(first).into_iter().map(|arrow| (End::Start, arrow));
+        let after = goal.labels.way_to(last).into_iter().rev().map(|arrow| (End::Goal, arrow));
+        let way: Vec<(End, Arrow)> = before.chain([(end, arrow)]).chain(after).collect();
+        let stands = way.iter().all(|&(end, arrow)| self.all_stand(end, &[arrow], both.floor));
+        stands.then(|| Path::new(way.iter().map(|&(end, arrow)| self.step(end, arrow)).collect()))
     }
 }
 

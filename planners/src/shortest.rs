@@ -89,9 +89,20 @@ impl<S: Space> Search<'_, S> {
 
     /// The search; finding nothing without a limit is a proof that there is nothing.
     pub(crate) fn run_shortest(&mut self, task: &Task<'_>) -> ShortestRun {
-        let run = self.a_star(task);
-        self.book(self.tree.bytes() + task.held_bytes);
-        run
+        loop {
+            let run = self.a_star(task);
+            self.book(self.tree.bytes() + task.held_bytes);
+            // What was decided has to stand when it is looked at closely.
+            let arrows = run.best.as_deref().unwrap_or_default();
+            if self.all_stand(End::Start, arrows, task.floor) {
+                return run;
+            }
+        }
+    }
+
+    /// Whether transitions that were decided to be wide enough are so when they are as tight as they can be.
+    pub(crate) fn all_stand(&mut self, end: End, arrows: &[Arrow], floor: f64) -> bool {
+        arrows.iter().all(|&arrow| is_wide_enough(self.graph.tighten(end, arrow).lower, floor))
     }
 
     fn a_star(&mut self, task: &Task<'_>) -> ShortestRun {

@@ -14,6 +14,7 @@ use super::local::{Memo, Neighbourhood, plane};
 use super::moves::{Motion, Move, fitting};
 use super::oracle::{Oracle, Worst};
 use super::problem::Problem;
+use super::recollection::Recollection;
 
 /// A problem with everything that answers questions about its states.
 pub struct Domain<'a> {
@@ -29,6 +30,10 @@ pub struct Domain<'a> {
     clear: Memo<(Move, usize), bool>,
     /// Margins at rest.
     at_rest: Memo<(Layout, Vec<Bond>), Worst>,
+    /// Bounds on margins at rest.
+    pub(super) bounds: Memo<(Layout, Vec<Bond>), Worst>,
+    /// What states at rest left for their neighbours.
+    pub(super) recollection: Recollection,
     /// Bounds on the margins of pivots.
     at_most: Memo<Neighbourhood, f64>,
 }
@@ -45,6 +50,8 @@ impl<'a> Domain<'a> {
             pitch: start.pitch(),
             clear: Memo::new(),
             at_rest: Memo::new(),
+            bounds: Memo::new(),
+            recollection: Recollection::default(),
             at_most: Memo::new(),
         }
     }

@@ -6,7 +6,7 @@
 use std::hash::Hash;
 use std::time::Instant;
 
-use planners::{Budget, Limit, PathOf, Progress, Search, Space};
+use planners::{Budget, PathOf, Progress, Search, Space};
 
 use super::options::{Event, Options};
 use super::plan::{Objective, Outcome, Plan, Proof, Report, Statistics};
@@ -71,7 +71,7 @@ impl Task<'_> {
             |progress: &Progress| on_event(&Event { progress: *progress, oracle_solves: (self.solves)() });
         let mut search = Search::new(space, self.search_options()).on_progress(&mut on_progress);
         let outcome = match self.options.objective {
-            Objective::Margin => best_margin(&mut search, &shortest, floor),
+            Objective::Margin => search.ascending(floor, &shortest, &mut |_| {}),
             Objective::Moves => shortest(&mut search, floor),
         };
         let mut found: Vec<Vec<S::Action>> = outcome.best().map(actions::<S>).into_iter().collect();
@@ -149,41 +149,6 @@ impl Task<'_> {
 /// What a path does.
 fn actions<S: Space>(path: &PathOf<S>) -> Vec<S::Action> {
     path.steps.iter().map(|step| step.action.clone()).collect()
-}
-
-/// The cheapest of the widest paths, with a path in hand early.
-///
-/// A search for the fewest moves is guided by the bound on the moves that are left, one for the
-/// largest margin is not. So a path of fewest moves comes first, and then the
-/// question is only whether a path is wider *by more than the tolerance*, which far
-/// fewer transitions are open to. If none is, the first path is also the
-/// cheapest of the widest: no path that the floor admits is cheaper.
-fn best_margin<S: Space>(
-    search: &mut Search<'_, S>,
-    shortest: impl Fn(&mut Search<'_, S>, f64) -> planners::Outcome<PathOf<S>>,
-    floor: f64,
-) -> planners::Outcome<PathOf<S>> {
-    let cheapest = shortest(search, floor);
-    let planners::Outcome::Solved { found, proof } = cheapest else { return cheapest };
-    let width = found.width.lower;
-    if width >= search.tie(proof.width_at_most) {
-        let proof = planners::Proof { width_optimal: true, ..proof };
-        return planners::Outcome::Solved { found, proof };
-    }
-    let wider = width + MARGIN_TOLERANCE * width.abs().max(1.0);
-    match search.margin(wider) {
-        planners::Outcome::Impossible => {
-            let proof = planners::Proof { width_at_most: wider, width_optimal: true, ..proof };
-            planners::Outcome::Solved { found, proof }
-        }
-        // Brackets straddle the edge of the tolerance: the engine's own passes tell what they allow.
-        planners::Outcome::OutOfBudget { limit: Limit::Precision, .. } => search.margin(floor),
-        planners::Outcome::OutOfBudget { limit, best: None, proof } => {
-            let proof = planners::Proof { width_optimal: false, cost_optimal: false, ..proof };
-            planners::Outcome::OutOfBudget { limit, best: Some(found), proof }
-        }
-        better => better,
-    }
 }
 
 /// Adds the paths that are not among those found by their key.

@@ -7,6 +7,7 @@
 use crate::robot::{Cell, Configuration, FaceConnection, Goal, ModuleLoad, Orientation, Placement, Port};
 
 use super::goal::GoalTest;
+use super::heuristic::Targets;
 use super::layout::{Bond, Layout, Placed};
 use super::moves::Ability;
 use super::refusal::{Rejection, check};
@@ -85,6 +86,11 @@ impl Problem {
         let lattice = &self.start.catalogue.module_types[class.module_type].cell();
         let free = !class.fixed;
         Ability { slide: free && lattice.slide, pivot: free && lattice.pivot, hinge: lattice.hinge.is_some() }
+    }
+
+    /// A layout of this problem's modules as what is to be reached.
+    pub fn targets(&self, layout: &Layout) -> Targets {
+        Targets::new(layout, self.classes.iter().map(|class| class.fixed).collect())
     }
 
     /// Whether the orientation of any module matters.

@@ -62,7 +62,14 @@ pub fn solve(
             Reduction::Saturated => {
                 let space = Saturated::new(&domain, ends.start_width(), ends.at_most());
                 let steps = |path: &[saturated::Action]| expand(&problem, path);
-                task.run(&space, &Plans { domain: &domain, steps }, on_event)
+                let plans = Plans { domain: &domain, steps };
+                let mode = std::env::var("MODE").unwrap_or_default();
+                let first = required.unwrap_or(f64::NEG_INFINITY);
+                match mode.as_str() {
+                    "a" => task.run(&space, &plans, on_event),
+                    "b" => task.run_with(&space, &plans, |s, f| s.from_both_ends(f), on_event),
+                    _ => task.run_with(&space, &plans, |s, f| if f > first { s.from_both_ends(f) } else { s.shortest(f) }, on_event),
+                }
             }
             Reduction::Primitive => {
                 let space = Primitive::new(&domain, ends.start_width(), ends.at_most());
