@@ -74,6 +74,7 @@ prop_compose! {
         Catalogue {
             name,
             connectors: vec![Connector { name: "magnet".into(), strength: 100.0, model }],
+            motions: Vec::new(),
             module_types: vec![module_type("node", vec![ball], Vec::new(), vec![surface]), elbow],
         }
     }

@@ -207,18 +207,18 @@ fn plan(start: &Configuration, sketch: &Sketch, number: usize) -> (Plan, Vec<Con
             1 => Action::Detach(pair),
             2 if module != other => {
                 let beside = if draft.half { cells[other] } else { cells[module] };
-                Action::Pivot { module, support: other, to: add(beside, draft.faces[0].step()) }
+                Action::Move { motion: 1, module, support: Some(other), to: add(beside, draft.faces[0].step()) }
             }
-            _ => Action::Slide { module, to: draft.to },
+            _ => Action::Move { motion: 0, module, support: None, to: draft.to },
         };
-        if let Action::Pivot { module, support, to } = action {
+        if let Action::Move { module, support: Some(support), to, .. } = action {
             let given = AxisAngle { axis: draft.faces[2], turn: if draft.half { Turn::Half } else { Turn::Quarter } };
             let actual = AxisAngle::between(cells[module], cells[support], to);
             if actual != Some(given) && (actual.is_none() || draft.faces[1] == Face::NegX) {
                 contradictions.push(Contradiction { plan: number, action: actions.len(), given, actual });
             }
         }
-        if let Action::Pivot { module, to, .. } | Action::Slide { module, to } = action {
+        if let Action::Move { module, to, .. } = action {
             cells[module] = to;
         }
         actions.push(PlannedAction { action, margin: draft.margin, phase: draft.phase });

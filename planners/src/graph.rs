@@ -142,6 +142,11 @@ impl<'a, S: Space> Graph<'a, S> {
         self.seen_from(End::Start, from)
     }
 
+    /// Upper bounds on the widths of all transitions that are known.
+    pub fn known_widths(&self) -> impl Iterator<Item = f64> {
+        self.edges.iter().flatten().flatten().map(|edge| edge.width.upper)
+    }
+
     /// Generates the transitions out of a state, once.
     pub fn expand(&mut self, from: StateId) {
         if self.edges[from as usize].is_none() {

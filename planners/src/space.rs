@@ -102,6 +102,11 @@ pub trait Space: Sync {
         let _ = state;
         0
     }
+
+    /// Approximate memory of what the space remembers of earlier answers, in bytes, for the memory limit.
+    fn memory_bytes(&self) -> usize {
+        0
+    }
 }
 
 /// A space that can be searched from its goals as well: they are known, and so are the transitions into a state.

@@ -5,11 +5,12 @@
 
 use std::sync::Arc;
 
+use crate::robot::Motion;
 use crate::statics::{Bracket, Memory};
 
 use super::domain::{Domain, bonds_after};
 use super::layout::{Bond, Layout};
-use super::moves::{Motion, Move};
+use super::moves::Move;
 use super::oracle::Worst;
 use super::recollection::matching;
 
@@ -28,7 +29,7 @@ impl Domain<'_> {
         let mut worst = settled;
         let memory = self.memory(from, floor);
         // A translation begins and ends in the states at rest that are its first and its last phase.
-        if let Motion::Pivot { .. } = step.motion {
+        if let Motion::Rotation { .. } = step.motion {
             let landed = bonds_after(from, bonds, step);
             for (layout, bonds) in [(from, bonds), (to, landed.as_slice())] {
                 let rest = self.decides_rest(layout, bonds, floor);

@@ -17,6 +17,7 @@ mod decision;
 mod domain;
 mod engines;
 mod goal;
+mod herald;
 mod heuristic;
 mod layout;
 pub mod linkage;
@@ -36,17 +37,20 @@ mod solve;
 mod step;
 mod surface;
 mod trace;
+mod ways;
 mod worst;
 
+pub use crate::robot::{Motion, Turn};
 pub use action::Action;
 pub use engines::MARGIN_TOLERANCE;
 pub use layout::{Bond, Layout, Placed};
-pub use moves::{Ability, Motion, Move, Turn, fitting};
-pub use options::{Event, Options, Reduction};
+pub use moves::Move;
+pub use options::{Event, Known, Method, News, Options, Pass, Reduction};
 pub use plan::{Bottleneck, Limit, Objective, Outcome, Plan, PlannedAction, Proof, Report, Statistics};
 pub use refusal::{Impossible, Refusal, Which};
 pub use solve::solve;
 pub use step::Step;
+pub use ways::{Ability, Way, fitting};
 
 #[cfg(test)]
 mod tests;

@@ -10,8 +10,12 @@ use crate::statics::Memory;
 
 use super::layout::Layout;
 
-/// Modules that all memories together may have; a memory takes a few hundred bytes for each.
-const MODULES: usize = 1 << 15;
+/// Modules that all memories together may have.
+const MODULES: usize = 1 << 13;
+
+/// About what a memory takes for each module, in bytes: two or three connections with the forces at their points, and its
+/// share of a factored matrix.
+const BYTES: usize = 4096;
 
 /// Memories of layouts with every possible connection engaged, the latest ones. Which are kept depends on what is
 /// asked, never on time: searches ask from one thread.
@@ -37,11 +41,18 @@ impl Recollection {
         if kept.memories.insert(layout.clone(), memory).is_none() {
             kept.order.push_back(layout.clone());
         }
+        // One is of use even where it is of a large robot.
         while kept.order.len() > 1 && kept.order.len() * layout.placed().len() > MODULES {
             if let Some(oldest) = kept.order.pop_front() {
                 kept.memories.remove(&oldest);
             }
         }
+    }
+
+    /// Approximate memory, in bytes.
+    pub fn bytes(&self) -> usize {
+        let kept = self.0.lock().expect("no thread panics while it holds memories");
+        kept.order.iter().map(|layout| layout.placed().len() * BYTES).sum()
     }
 }
 

@@ -12,11 +12,13 @@
 
 use planners::{Reversible, Space, Transition, Width};
 
+use crate::robot::Motion;
+
 use super::domain::{Domain, width};
 use super::goal::Arrival;
 use super::heuristic::Targets;
 use super::layout::{Bond, Layout};
-use super::moves::{Motion, Move};
+use super::moves::Move;
 use super::oracle::Worst;
 
 /// Placements, all connections engaged; or the goal with its own connections.
@@ -80,9 +82,9 @@ impl<'a> Saturated<'a> {
     fn of_move(&self, layout: &Layout, step: Move, floor: f64) -> Worst {
         let bonds = kept(layout, step);
         let released = match step.motion {
-            // When it begins to slide, the module is held as after the detachments.
-            Motion::Slide { .. } => None,
-            Motion::Pivot { .. } => Some(self.domain.of_state(layout, &bonds)),
+            // When a translation begins, the module is held as after the detachments.
+            Motion::Translation { .. } => None,
+            Motion::Rotation { .. } => Some(self.domain.of_state(layout, &bonds)),
         };
         if let Some(released) = released.filter(|released| released.is_out(floor)) {
             return released.cut_short();
@@ -168,6 +170,10 @@ impl Space for Saturated<'_> {
 
     fn heap_bytes(&self, state: &State) -> usize {
         size_of_val(state.layout.placed())
+    }
+
+    fn memory_bytes(&self) -> usize {
+        self.domain.memory_bytes()
     }
 }
 

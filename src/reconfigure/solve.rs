@@ -3,7 +3,7 @@
 
 use std::time::Instant;
 
-use planners::{Space, Width};
+use planners::{Reversible, Space, Width};
 
 use crate::robot::{Configuration, FaceConnection, Goal};
 use crate::statics::Bracket;
@@ -63,12 +63,10 @@ pub fn solve(
                 let space = Saturated::new(&domain, ends.start_width(), ends.at_most());
                 let steps = |path: &[saturated::Action]| expand(&problem, path);
                 let plans = Plans { domain: &domain, steps };
-                let mode = std::env::var("MODE").unwrap_or_default();
-                let first = required.unwrap_or(f64::NEG_INFINITY);
-                match mode.as_str() {
-                    "a" => task.run(&space, &plans, on_event),
-                    "b" => task.run_with(&space, &plans, |s, f| s.from_both_ends(f), on_event),
-                    _ => task.run_with(&space, &plans, |s, f| if f > first { s.from_both_ends(f) } else { s.shortest(f) }, on_event),
+                // Where it is known what the goal looks like, the search comes from there as well.
+                match space.goals().is_empty() {
+                    true => task.run(&space, &plans, on_event),
+                    false => task.run_with(&space, &plans, &|search, floor| search.from_both_ends(floor), on_event),
                 }
             }
             Reduction::Primitive => {
@@ -149,10 +147,12 @@ impl<S: Space, F: Fn(&[S::Action]) -> Vec<Step>> Translation<S> for Plans<'_, F>
 
     /// The moves of a plan, up to the order of independent ones.
     fn key(&self, path: &[S::Action]) -> Trace {
-        Trace::new((self.steps)(path).iter().filter_map(|step| match step {
+        let steps = (self.steps)(path);
+        let moves = steps.iter().filter_map(|step| match step {
             Step::Move(step) => Some(*step),
             Step::Attach(_) | Step::Detach(_) => None,
-        }))
+        });
+        Trace::new(moves, |step| self.domain.problem.needs(step))
     }
 
     fn plan(&self, path: &[S::Action]) -> Plan {

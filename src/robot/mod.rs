@@ -16,21 +16,26 @@ mod lattice;
 pub mod linkage;
 mod module_type;
 mod module_type_check;
+mod motion;
 mod occupancy;
 mod problem;
 mod shape;
+mod stencil;
+mod stencil_check;
 mod terrain;
 #[cfg(test)]
 mod tests;
 
-pub use built_in::{BUILT_IN, rofi};
+pub use built_in::{BUILT_IN, BUILT_IN_MOTIONS, rofi};
 pub use catalogue::Catalogue;
 pub use configuration::{Configuration, FaceConnection, Goal, Matching, Module, ModuleLoad, Port, Requirement};
 pub use environment::{Environment, Ground, Obstacle};
 pub use hull::{Hull, HullFace};
 pub use lattice::{Cell, Face, Orientation, Placement, neighbour};
 pub use module_type::{BodyType, JointType, LatticeType, ModuleType, PortPlace, PortType};
+pub use motion::{Motion, Turn, axis_of_turn};
 pub use occupancy::Occupancy;
 pub use problem::{Fault, Part, Problem};
 pub use shape::{LARGEST, Shape, ShapeFault};
+pub use stencil::{FARTHEST_CELL, MotionType, Stencil};
 pub use terrain::{HeightField, MOST_HEIGHTS, MOST_TRIANGLES, Mesh, Terrain};

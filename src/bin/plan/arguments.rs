@@ -45,12 +45,16 @@ pub struct PlanningArguments {
     /// Seconds after which to stop with the best plan so far
     #[arg(long, value_name = "S", value_parser = seconds)]
     pub time_limit: Option<Duration>,
+    /// Memory not to exceed, in bytes or with K, M, G or T for powers of 1024; the search stops with the best plan so
+    /// far [default: half of the machine's memory]
+    #[arg(long, value_name = "SIZE", value_parser = crate::memory::size)]
+    pub memory_limit: Option<usize>,
     /// Threads for the oracle [default: all cores]; the plan does not depend on it
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
-    /// Seed; the search draws no random numbers, so every seed gives the same plan
-    #[arg(long, value_name = "N")]
-    pub seed: Option<u64>,
+    /// Seed for choices among equals of a decomposition; the exact search makes none
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub seed: u64,
     /// Print a plan/1 document (and errors as an errors/1 document)
     #[arg(long)]
     pub json: bool,
@@ -63,6 +67,20 @@ pub struct PlanningArguments {
     /// Search single attach, detach and move actions instead of whole moves: the slow reference
     #[arg(long)]
     pub primitive: bool,
+    /// How to look for plans of lattice robots
+    #[arg(long, value_enum, default_value_t = PlannerArgument::Auto)]
+    pub planner: PlannerArgument,
+}
+
+/// `--planner`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum PlannerArgument {
+    /// Exact for few movable modules, decomposition for many
+    Auto,
+    /// Search of all states, with proofs of optimality
+    Exact,
+    /// One module after another to where it is wanted, for hundreds of modules; proved safe, not best
+    Decompose,
 }
 
 /// `--objective`.

@@ -12,6 +12,7 @@ mod family;
 mod files;
 mod gives_way;
 mod load_range;
+mod memory;
 mod motion_range;
 mod order;
 mod output;

@@ -7,14 +7,14 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use steadfast::io::{Problem, read_problem};
-use steadfast::reconfigure::{Event, Objective, Options, Outcome, Reduction, Refusal};
+use steadfast::reconfigure::{Method, Objective, Options, Outcome, Reduction, Refusal};
 
-use crate::arguments::{ObjectiveArgument, PlanningArguments};
+use crate::arguments::{ObjectiveArgument, PlannerArgument, PlanningArguments};
 use crate::exit::Exit;
 use crate::family::{Answer, Family};
 use crate::progress::ProgressLine;
 use crate::summary::summary;
-use crate::{files, output};
+use crate::{files, memory, output};
 
 /// Exit code of a program that a second Ctrl-C ended at once.
 const INTERRUPTED: i32 = 130;
@@ -101,15 +101,23 @@ fn search<F: Family>(arguments: &PlanningArguments, problem: &F) -> Result<Resul
         min_margin: arguments.min_margin,
         plans: arguments.plans as usize,
         time_limit: arguments.time_limit,
+        max_bytes: arguments.memory_limit.or_else(memory::half_of_the_machine),
+        measure_bytes: Some(memory::in_use),
         cancel: Some(cancelled_by_interrupt()?),
         ignore_stability: arguments.ignore_stability,
         reduction: if arguments.primitive { Reduction::Primitive } else { Reduction::Saturated },
+        method: match arguments.planner {
+            PlannerArgument::Auto => Method::Auto,
+            PlannerArgument::Exact => Method::Exact,
+            PlannerArgument::Decompose => Method::Decompose,
+        },
+        seed: arguments.seed,
         ..Options::default()
     };
     let threads = arguments.threads.map_or(0, usize::from);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(|error| error.to_string())?;
     let mut line = ProgressLine::new();
-    let report = pool.install(|| problem.solve(&options, &mut |event: &Event| line.show(event)));
+    let report = pool.install(|| problem.solve(&options, &mut |event| line.show(event)));
     line.clear();
     Ok(report)
 }

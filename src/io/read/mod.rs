@@ -20,6 +20,7 @@ mod linkage;
 mod linkage_plan;
 mod matching;
 mod module_type;
+mod motion;
 mod names;
 mod outcome;
 mod plan;

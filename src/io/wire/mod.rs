@@ -12,6 +12,7 @@ mod connector;
 mod errors;
 mod gives_way;
 mod load_range;
+mod motion;
 mod number;
 mod outcome;
 mod plan;
@@ -19,10 +20,8 @@ mod rofi;
 mod structure;
 mod terrain;
 
-pub(super) use action::{Action, Axis, CellTarget, Half, JointOf, SpotTarget};
-pub(super) use catalogue::{
-    BodyType, Catalogue, CatalogueFormat, Faces, Joint, ModuleType, Motion, PortType, Ports, Shape,
-};
+pub(super) use action::{Action, Axis, CellTarget, Half, JointOf, SpotTarget, TurnAbout};
+pub(super) use catalogue::{BodyType, Catalogue, CatalogueFormat, Faces, Joint, ModuleType, PortType, Ports, Shape};
 pub(super) use certificate::{
     Carried, CarriedPoints, CarriedWrench, Certificate, CertificateFormat, Mechanism, Stress, Twist,
 };
@@ -38,6 +37,7 @@ pub(super) use connector::Connector;
 pub(super) use errors::{Errors, ErrorsFormat, FileError};
 pub(super) use gives_way::{ContactMotion, GivesWay, MovingContact};
 pub(super) use load_range::{Failure, LoadRange, LoadRangeFormat, RangeEnd, RangeOutcome};
+pub(super) use motion::{Edge, Stencil};
 pub(super) use number::{AngleRange, Bound, Limit, NonNegative, Positive, Real, reals};
 pub(super) use outcome::{Impossible, Outcome, StoppedBy, Which};
 pub(super) use plan::{Alternative, Bottleneck, Bracket, Objective, Plan, PlanFormat, Proof, Statistics};

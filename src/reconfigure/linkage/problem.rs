@@ -6,7 +6,7 @@
 use std::sync::Arc;
 
 use crate::reconfigure::refusal::{Impossible, Refusal, Rejection};
-use crate::robot::linkage::{Goal, Linkage, Symmetry};
+use crate::robot::linkage::{Directions, Goal, Linkage, MEETING, Symmetry, is_square};
 use crate::robot::{ModuleLoad, ModuleType};
 use crate::spatial::{Pose, Vec3};
 
@@ -27,7 +27,8 @@ pub struct Class {
     pub loads: Vec<ModuleLoad>,
     /// The one module of the class, where modules are labelled.
     pub label: Option<String>,
-    /// The ways to describe its modules: of loaded or fixed ones only as they are.
+    /// The ways to describe its modules: of loaded ones those that leave the points of action where they are, of
+    /// fixed ones only as they are.
     pub symmetries: Vec<Symmetry>,
     /// How far its ports and solids reach from the origin, in m, whatever its joints.
     pub reach: f64,
@@ -74,7 +75,7 @@ impl Problem {
         super::refusal::check(start, goal)?;
         let frame = frame(start, goal)?;
         let (start, wanted_linkage) = (normal(start), normal(&goal.linkage));
-        let (classes, class_of) = classes(&start, goal.matching.labelled);
+        let (classes, class_of) = classes(&start, goal.matching.labelled, is_square(&[&start, &wanted_linkage]));
         let wanted = goal_classes(&start, &class_of, &classes, &wanted_linkage, goal.matching.labelled)?;
         let mut slots: Vec<usize> = (0..start.modules.len()).collect();
         slots.sort_by_key(|&module| class_of[module]);
@@ -132,12 +133,14 @@ fn frame(start: &Linkage, goal: &Goal) -> Result<Frame, Refusal> {
     Err(Refusal::NoFreeFrame { because })
 }
 
-/// The classes of the start's modules, in order of first appearance.
-fn classes(start: &Linkage, labelled: bool) -> (Vec<Class>, Vec<usize>) {
+/// The classes of the start's modules, in order of first appearance. `square` says that everything is turned by
+/// quarters and stays so.
+fn classes(start: &Linkage, labelled: bool, square: bool) -> (Vec<Class>, Vec<usize>) {
     let mut steps: Vec<f64> = Vec::new();
     for module in 0..start.modules.len() {
         steps.extend(start.module_type(module).roll_step_degrees.filter(|step| !steps.contains(step)));
     }
+    let directions = if square { Directions::Axes } else { Directions::Steps(&steps) };
     let mut classes: Vec<Class> = Vec::new();
     let mut class_of = Vec::with_capacity(start.modules.len());
     for (index, module) in start.modules.iter().enumerate() {
@@ -152,10 +155,13 @@ fn classes(start: &Linkage, labelled: bool) -> (Vec<Class>, Vec<usize>) {
         };
         let position = classes.iter().position(is_same).unwrap_or_else(|| {
             let kind = start.module_type(index).clone();
-            let mut symmetries = start.catalogue.symmetries(module.module_type, &steps);
-            if module.fixed || !loads.is_empty() {
+            let mut symmetries = start.catalogue.symmetries(module.module_type, directions);
+            if module.fixed {
                 symmetries.truncate(1);
             }
+            let points = || loads.iter().map(|load| load.at.unwrap_or(kind.body().com));
+            let tolerance = MEETING * kind.size();
+            symmetries.retain(|symmetry| points().all(|point| symmetry.keeps_point(&point, tolerance)));
             let beyond = (0..kind.joints.len()).map(|joint| beyond(&kind, joint)).collect();
             let kind = Arc::new(kind);
             let module_type = module.module_type;

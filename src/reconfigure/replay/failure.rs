@@ -40,6 +40,8 @@ pub enum Fault<T = Touched> {
     NoSuchMotion,
     /// A module that the motion needs is missing: a coplanar neighbour, a support, or a landing.
     NoSupport,
+    /// A cell that the motion needs empty is not.
+    NotFree,
     /// The module is not connected where the motion starts from.
     NotHeld,
     /// A connection that the motion cannot keep is engaged.
@@ -99,6 +101,7 @@ impl<T: fmt::Display> fmt::Display for Fault<T> {
             Self::Unable => f.write_str("the module cannot make this motion"),
             Self::NoSuchMotion => f.write_str("no single motion leads there from where the module is"),
             Self::NoSupport => f.write_str("a module that the motion needs as support or landing is missing"),
+            Self::NotFree => f.write_str("a module is in a cell that the motion needs empty"),
             Self::NotHeld => f.write_str("the module is not connected to the support of its motion"),
             Self::NotReleased => f.write_str("a connection that the motion cannot keep is engaged"),
             Self::Collision { with } => write!(f, "it collides with {with}"),

@@ -9,6 +9,7 @@ mod engagement;
 mod kinematics;
 mod problems;
 mod spot;
+mod square;
 mod symmetry;
 #[cfg(test)]
 mod tests;
@@ -28,7 +29,8 @@ pub use code::Code;
 pub use engagement::{Engagement, MEETING, frame_between, orientations_between};
 pub use kinematics::{child_pose, mated};
 pub use spot::{MICRO, Spot};
-pub use symmetry::Symmetry;
+pub use square::is_square;
+pub use symmetry::{Directions, Symmetry};
 
 /// A module of a linkage.
 #[derive(Clone, Debug, PartialEq)]
