@@ -45,8 +45,8 @@ pub struct Options {
     pub objective: Objective,
     /// Margin that every transient state must have, where it is more than the start requires.
     pub min_margin: Option<f64>,
-    /// How many plans; 0 counts as 1. With [`Objective::Margin`] further plans have
-    /// the best margin too, with [`Objective::Moves`] the required one.
+    /// How many plans; 0 counts as 1. They are the best ones by margin and then by moves, with [`Objective::Moves`]
+    /// those of the fewest moves; [`Objective::Pareto`] has as many as its front.
     pub plans: usize,
     /// Time to stop after; plans in the middle of a check finish it.
     pub time_limit: Option<Duration>,

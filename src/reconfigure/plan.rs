@@ -19,6 +19,9 @@ pub enum Objective {
     Margin,
     /// The fewest moves whose margin is at least the required one.
     Moves,
+    /// Every trade between the two that no other plan beats: first the plan of the largest margin, then those with fewer
+    /// moves and smaller margins.
+    Pareto,
 }
 
 /// An action with what it is worth.
@@ -75,12 +78,12 @@ pub enum Outcome<C = FaceConnection> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Proof {
     /// Whether the plan is the best by its objective, within the tolerance of
-    /// margins.
+    /// margins; for [`Objective::Pareto`] whether the plans are the whole front.
     pub optimal: bool,
     /// No plan has a larger margin; infinite where plans are made by geometry alone.
     pub margin_at_most: f64,
     /// No plan with the margin required, or with the best one for
-    /// [`Objective::Margin`], has fewer moves.
+    /// [`Objective::Margin`], has fewer moves; for [`Objective::Pareto`], none that those found do not match.
     pub moves_at_least: u32,
 }
 
@@ -122,7 +125,8 @@ pub struct Report<A = Action, C = FaceConnection> {
     pub required: Option<f64>,
     /// The best plan found.
     pub plan: Option<Plan<A, C>>,
-    /// Further plans, best first, that differ in more than the order of independent moves.
+    /// Further plans, best first, that differ in more than the order of independent moves: those that come next by margin and
+    /// then by moves, for [`Objective::Moves`] by moves, for [`Objective::Pareto`] the rest of the front.
     pub alternatives: Vec<Plan<A, C>>,
     /// What ended the search for further plans before there were as many as
     /// asked for; `None` where these are all that exist, or enough.

@@ -90,6 +90,8 @@ pub enum ObjectiveArgument {
     Margin,
     /// The fewest moves with at least the required margin
     Moves,
+    /// Every trade between margin and moves that no other plan beats
+    Pareto,
 }
 
 fn margin(text: &str) -> Result<f64, String> {

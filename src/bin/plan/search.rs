@@ -97,6 +97,7 @@ fn search<F: Family>(arguments: &PlanningArguments, problem: &F) -> Result<Resul
         objective: match arguments.objective {
             ObjectiveArgument::Margin => Objective::Margin,
             ObjectiveArgument::Moves => Objective::Moves,
+            ObjectiveArgument::Pareto => Objective::Pareto,
         },
         min_margin: arguments.min_margin,
         plans: arguments.plans as usize,

@@ -21,11 +21,14 @@ pub fn summary<F: Family>(
         bottleneck(&mut text, problem, plan);
     }
     for (index, plan) in report.alternatives.iter().enumerate() {
-        let _ = writeln!(text, "\nalternative {}: {}", index + 1, worth(plan));
+        let _ = match report.objective {
+            Objective::Pareto => writeln!(text, "\nwith fewer moves: {}", worth(plan)),
+            Objective::Margin | Objective::Moves => writeln!(text, "\nalternative {}: {}", index + 1, worth(plan)),
+        };
         actions(&mut text, problem, plan);
     }
     if let Some(limit) = report.alternatives_cut_by.filter(|_| report.plan.is_some()) {
-        let _ = writeln!(text, "\nthere may be further plans as good: the search for them was {}", cut(limit));
+        let _ = writeln!(text, "\nthere may be further plans: the search for them was {}", cut(limit));
     }
     text.push('\n');
     proved(&mut text, report);
@@ -117,6 +120,10 @@ fn proved<A, C>(text: &mut String, report: &Report<A, C>) {
             "proved: no plan has a larger margin, and none with this margin has fewer moves".to_string()
         }
         (Objective::Moves, true, true) => "proved: no plan with the required margin has fewer moves".to_string(),
+        (Objective::Pareto, true, true) => {
+            "proved: every other plan with the required margin has no more margin than one of these, and no fewer moves"
+                .to_string()
+        }
         (_, true, false) => "proved: no plan has fewer moves".to_string(),
         (_, false, stability) => {
             let mut known = Vec::new();

@@ -67,6 +67,7 @@ fn report<F: Family>(
         objective: match wire.objective {
             wire::Objective::Margin => Objective::Margin,
             wire::Objective::Moves => Objective::Moves,
+            wire::Objective::Pareto => Objective::Pareto,
         },
         required: wire.required_margin.map(|margin| margin.0),
         plan,

@@ -74,6 +74,8 @@ pub(crate) enum Objective {
     Margin,
     /// The fewest moves with at least the required margin.
     Moves,
+    /// Every trade between the two that no other plan beats; first the one of the largest margin.
+    Pareto,
 }
 
 /// An interval that is proved to hold a value; null where nothing was proved.

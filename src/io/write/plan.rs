@@ -55,6 +55,7 @@ fn written<F: Family>(
         objective: match report.objective {
             Objective::Margin => wire::Objective::Margin,
             Objective::Moves => wire::Objective::Moves,
+            Objective::Pareto => wire::Objective::Pareto,
         },
         required_margin: report.required.map(Real),
         margin,
