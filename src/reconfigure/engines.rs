@@ -6,11 +6,12 @@
 use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::hash::Hash;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use planners::{Budget, Limit, PathOf, Progress, Search, Shortest, Space};
 
 use super::herald::Herald;
+use super::in_the_way::InTheWay;
 use super::options::{Event, Options};
 use super::plan::{Objective, Outcome, Plan, Proof, Report, Statistics};
 use super::refusal::Impossible;
@@ -18,6 +19,12 @@ use super::refusal::Impossible;
 /// Two margins this close, relative to the larger of 1 and the margin, are
 /// equally good: what the oracle's brackets are guaranteed to resolve.
 pub const MARGIN_TOLERANCE: f64 = 1e-6;
+
+/// Expansions that an explanation has at least.
+const EXPLANATION: u64 = 2000;
+
+/// Time that an explanation has at least, where there is a limit at all.
+const SHORTEST_EXPLANATION: Duration = Duration::from_secs(1);
 
 /// How paths of a space become plans of a robot.
 pub trait Translation<S: Space> {
@@ -105,6 +112,7 @@ impl Task<'_> {
             plan,
             alternatives: plans.into(),
             alternatives_cut_by: answer.cut_by,
+            in_the_way: None,
             proof,
             statistics: Statistics {
                 expanded: statistics.expanded,
@@ -126,6 +134,40 @@ impl Task<'_> {
             cancel: self.options.cancel.clone(),
         };
         planners::Options { tolerance: MARGIN_TOLERANCE, budget, ..planners::Options::default() }
+    }
+
+    /// What is in the way of a plan, by a search that takes about as long again as the one before. `unmoved` says which
+    /// modules are where they were at the start in all of some states.
+    pub fn in_the_way<S: Space, T: Translation<S>>(
+        &self,
+        space: &S,
+        translation: &T,
+        report: &ReportOf<T, S>,
+        unmoved: &dyn Fn(&[&S::State]) -> Option<Vec<usize>>,
+    ) -> Option<InTheWay<T::Action, T::Connection>>
+    where
+        T::Connection: Copy + PartialEq,
+    {
+        let is_cancelled = matches!(report.outcome, Outcome::OutOfBudget(Limit::Cancelled));
+        let is_asked = self.options.explain && report.plan.is_none() && !is_cancelled;
+        let required = self.required.filter(|_| is_asked)?;
+        let mut options = self.search_options();
+        options.budget.deadline = self.options.time_limit.map(|_| {
+            let so_far = self.began.elapsed();
+            Instant::now() + (so_far / 4).max(SHORTEST_EXPLANATION)
+        });
+        options.budget.max_expansions = Some(report.statistics.expanded.saturating_mul(2).max(EXPLANATION));
+        let mut search = Search::new(space, options);
+        let widest = search.widest(f64::NEG_INFINITY);
+        let plan = widest.best().map(|path| translation.plan(&actions::<S>(path)));
+        let at_most = widest.proof().map_or(f64::NEG_INFINITY, |proof| proof.width_at_most);
+        let mut found = InTheWay::new(plan, at_most, required);
+        found.cut_by = widest.limit();
+        // The goal is out of reach with the margin required: the search sees every state that is not.
+        if matches!(search.shortest(required), planners::Outcome::Impossible) {
+            found.never_move = unmoved(&search.reached(required));
+        }
+        Some(found)
     }
 
     /// The best path, and where more are wanted those that come next.

@@ -59,6 +59,8 @@ pub struct Options {
     pub measure_bytes: Option<fn() -> Option<usize>>,
     /// Set it from any thread to stop.
     pub cancel: Option<Arc<AtomicBool>>,
+    /// Where no plan is found, say [what is in the way](super::InTheWay): a search of its own, for about as long again.
+    pub explain: bool,
     /// Plan by geometry and connectedness alone, for comparison.
     pub ignore_stability: bool,
     /// What the search goes by.

@@ -17,6 +17,7 @@ mod motion_range;
 mod order;
 mod output;
 mod polar_map;
+mod profile;
 mod progress;
 mod schema;
 mod search;

@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use crate::geometry::{Solid, Surroundings, first_collision};
+use crate::reconfigure::stronger::strengthen;
 use crate::robot::linkage::{Connection, Linkage};
 use crate::spatial::Pose;
 use crate::statics::{Question, assess};
@@ -16,13 +17,15 @@ use super::{Fault, Found, Judge, Refusal, Sample, claims, phases};
 pub(super) struct Checker<'a> {
     assembler: &'a Assembler<'a>,
     surroundings: Surroundings,
+    /// What is taken to be so many times as strong as it is.
+    stronger: Option<(Held, f64)>,
     pub judge: Judge<Held, Touched>,
 }
 
 impl<'a> Checker<'a> {
-    pub fn new(start: &Linkage, assembler: &'a Assembler<'a>, required: f64) -> Self {
+    pub fn new(start: &Linkage, assembler: &'a Assembler<'a>, required: f64, stronger: Option<(Held, f64)>) -> Self {
         let surroundings = Surroundings::new(&start.environment);
-        Self { assembler, surroundings, judge: Judge::new(required, start.require.connected) }
+        Self { assembler, surroundings, stronger, judge: Judge::new(required, start.require.connected) }
     }
 
     /// Checks a state at rest.
@@ -50,8 +53,11 @@ impl<'a> Checker<'a> {
     }
 
     fn sample(&self, linkage: &Linkage, bodies: &[Vec<Pose>], phase: f64) -> Result<Sample<Held>, Refusal> {
-        let Assembly { structure, connections, .. } =
+        let Assembly { mut structure, connections, .. } =
             self.assembler.assemble(&Transient { bodies, engaged: &linkage.connections });
+        if let Some((held, factor)) = self.stronger {
+            strengthen(&mut structure, factor, |index| connections[index] == held);
+        }
         let assessment = assess(&structure, Question::VALUE).map_err(Refusal::Structure)?;
         let limit = assessment.utilisation.lower * (1.0 - claims::AT_LIMIT);
         let limiting = assessment.connections.iter().zip(&connections);
