@@ -20,6 +20,7 @@ mod output;
 mod parallel;
 mod polar_map;
 mod progress;
+mod restrictions;
 mod schema;
 mod search;
 mod summary;
