@@ -14,6 +14,7 @@ use super::local::{Memo, Neighbourhood, plane};
 use super::moves::Move;
 use super::oracle::{Oracle, Worst};
 use super::problem::Problem;
+use super::recollection::Recollection;
 use super::ways::fitting;
 
 /// A problem with everything that answers questions about its states.
@@ -33,6 +34,10 @@ pub struct Domain<'a> {
     clear: Memo<(Move, usize), bool>,
     /// Margins at rest.
     at_rest: Memo<(Layout, Vec<Bond>), Worst>,
+    /// Bounds on margins at rest.
+    pub(super) bounds: Memo<(Layout, Vec<Bond>), Worst>,
+    /// What states at rest left for their neighbours.
+    pub(super) recollection: Recollection,
     /// Bounds on the margins of rotations.
     at_most: Memo<Neighbourhood, f64>,
 }
@@ -51,6 +56,8 @@ impl<'a> Domain<'a> {
             pitch: start.pitch(),
             clear: Memo::new(),
             at_rest: Memo::new(),
+            bounds: Memo::new(),
+            recollection: Recollection::default(),
             at_most: Memo::new(),
         }
     }
@@ -61,7 +68,8 @@ impl<'a> Domain<'a> {
         // Every module of a lattice has about two connections of its own, and a pivot a handful of neighbours.
         let at_rest = modules * (size_of::<Placed>() + 2 * size_of::<Bond>());
         let at_most = 8 * size_of::<(Cell, usize)>();
-        self.clear.bytes(0) + self.at_rest.bytes(at_rest) + self.at_most.bytes(at_most)
+        let at_rest = self.at_rest.bytes(at_rest) + self.bounds.bytes(at_rest);
+        self.clear.bytes(0) + at_rest + self.at_most.bytes(at_most) + self.recollection.bytes()
     }
 
     /// The moves that fit among the modules, hit neither ground nor obstacles and are

@@ -12,6 +12,8 @@ mod assembly_laws;
 mod assembly_tests;
 mod compose;
 mod course;
+mod decides;
+mod decision;
 mod domain;
 mod engines;
 mod goal;
@@ -27,6 +29,7 @@ pub mod partial_order;
 mod plan;
 mod primitive;
 mod problem;
+mod recollection;
 mod refusal;
 pub mod replay;
 mod sampling;
@@ -35,6 +38,7 @@ mod solve;
 mod step;
 mod surface;
 mod trace;
+mod wander;
 mod ways;
 mod worst;
 
@@ -48,6 +52,7 @@ pub use plan::{Bottleneck, Limit, Objective, Outcome, Plan, PlannedAction, Proof
 pub use refusal::{Impossible, Refusal, Which};
 pub use solve::solve;
 pub use step::Step;
+pub use wander::{Walk, wander};
 pub use ways::{Ability, Way, fitting};
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
+use crate::{bench, generate};
 use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
 
 use crate::restrictions::Restrictions;
@@ -126,6 +127,10 @@ pub enum Command {
     Parallel(ParallelArguments),
     /// Write a robot in another format: a configuration/1 file, or one of the RoFI platform's
     Convert(ConvertArguments),
+    /// Draw a random problem: a start and a goal that both stand
+    Generate(generate::Arguments),
+    /// Plan for all problems of a suite, verify every plan, and report
+    Bench(bench::Arguments),
     /// Print the JSON Schema of a format, or the names of all formats
     Schema(SchemaArguments),
 }

@@ -4,6 +4,7 @@
 //! mechanics and no search; what it prints, the library has found.
 
 mod arguments;
+mod bench;
 mod check;
 mod convert;
 mod exit;
@@ -11,6 +12,7 @@ mod explain;
 mod family;
 mod files;
 mod gantt;
+mod generate;
 mod gives_way;
 mod load_range;
 mod memory;
@@ -43,6 +45,8 @@ fn main() -> ExitCode {
         (Some(Command::MotionRange(range)), _) => motion_range::run(&range),
         (Some(Command::Convert(convert)), _) => convert::run(&convert),
         (Some(Command::LoadRange(range)), _) => load_range::run(&range),
+        (Some(Command::Generate(generate)), _) => generate::run(&generate),
+        (Some(Command::Bench(bench)), _) => bench::run(&bench),
         (Some(Command::Parallel(parallel)), _) => parallel::run(&parallel),
         (Some(Command::Schema(schema)), _) => schema::run(&schema),
         (None, Some(planning)) => search::run(&planning),

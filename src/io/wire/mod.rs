@@ -17,8 +17,10 @@ mod number;
 mod outcome;
 mod partial_order;
 mod plan;
+mod result;
 mod rofi;
 mod structure;
+mod suite;
 mod terrain;
 
 pub(super) use action::{Action, Axis, CellTarget, Half, JointOf, SpotTarget, TurnAbout};
@@ -43,9 +45,11 @@ pub(super) use number::{AngleRange, Bound, Limit, NonNegative, Positive, Real, r
 pub(super) use outcome::{Impossible, Outcome, StoppedBy, Which};
 pub(super) use partial_order::{CheckedMoments, OrderedAction, PartialOrder, PartialOrderFormat, Wait};
 pub(super) use plan::{Alternative, Bottleneck, Bracket, Objective, Plan, PlanFormat, Proof, Statistics};
+pub(super) use result::{Asked, FoundPlan, JobEnding, JobResult, PlanFlaw, ReplayOf, ResultFormat, TracePoint};
 pub(super) use rofi::{
     ComponentOf, CoordinateAxis, Direction, DockOf, IdentityTransform, ModuleJoint, NameOrNumber, PlacingJoint,
     PlacingKind, RofiModule, RofiWorld, SpaceJoint, Transform, Voxel, VoxelWorld,
 };
 pub(super) use structure::{Body, Connection, Contact, Load, Structure, StructureFormat};
+pub(super) use suite::{GoalOrigin, PlannerName, RobotFamily, Seeds, Suite, SuiteCase, TerrainKind};
 pub(super) use terrain::{Mesh, Terrain};

@@ -6,6 +6,7 @@ mod motions;
 mod outcomes;
 mod reports;
 mod restrictions;
+mod stencils;
 mod tampering;
 
 use std::sync::Arc;
