@@ -6,6 +6,8 @@ use std::time::Duration;
 use crate::{bench, generate};
 use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
 
+use crate::restrictions::Restrictions;
+
 /// Reconfiguration planner for modular robots in which every transient state is proved stable
 #[derive(Debug, Parser)]
 #[command(
@@ -74,6 +76,8 @@ pub struct PlanningArguments {
     /// How to look for plans of lattice robots
     #[arg(long, value_enum, default_value_t = PlannerArgument::Auto)]
     pub planner: PlannerArgument,
+    #[command(flatten)]
+    pub restrictions: Restrictions,
 }
 
 /// `--planner`.

@@ -23,6 +23,7 @@ mod parallel;
 mod polar_map;
 mod profile;
 mod progress;
+mod restrictions;
 mod schema;
 mod search;
 mod summary;

@@ -122,7 +122,10 @@ fn appraise<F: Family>(
 fn read(arguments: &PlanningArguments) -> io::Result<Result<Problem, Exit>> {
     let (start, goal) = (files::read(&arguments.start), files::read(&arguments.goal));
     match read_problem(&start, &goal, &files::resolve) {
-        Ok(problem) => Ok(Ok(problem)),
+        Ok(mut problem) => match arguments.restrictions.apply(&mut problem) {
+            Ok(()) => Ok(Ok(problem)),
+            Err(trouble) => output::refused(&start.name, [trouble], arguments.json).map(Err),
+        },
         Err(diagnostics) => output::bad_input(&diagnostics, arguments.json).map(Err),
     }
 }
