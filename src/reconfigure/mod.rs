@@ -25,6 +25,7 @@ mod local;
 mod moves;
 mod options;
 mod oracle;
+pub mod partial_order;
 mod plan;
 mod primitive;
 mod problem;
@@ -37,6 +38,7 @@ mod solve;
 mod step;
 mod surface;
 mod trace;
+mod wander;
 mod ways;
 mod worst;
 
@@ -50,6 +52,7 @@ pub use plan::{Bottleneck, Limit, Objective, Outcome, Plan, PlannedAction, Proof
 pub use refusal::{Impossible, Refusal, Which};
 pub use solve::solve;
 pub use step::Step;
+pub use wander::{Walk, wander};
 pub use ways::{Ability, Way, fitting};
 
 #[cfg(test)]

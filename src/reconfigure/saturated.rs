@@ -55,6 +55,24 @@ pub fn kept(layout: &Layout, step: Move) -> Vec<Bond> {
     bonds
 }
 
+/// Margin of a move out of a state with everything engaged, with the detachments before it.
+pub fn of_move(domain: &Domain, layout: &Layout, step: Move, floor: f64) -> Worst {
+    let bonds = kept(layout, step);
+    let released = match step.motion {
+        // When a translation begins, the module is held as after the detachments.
+        Motion::Translation { .. } => None,
+        Motion::Rotation { .. } => Some(domain.of_state(layout, &bonds)),
+    };
+    if let Some(released) = released.filter(|released| released.is_out(floor)) {
+        return released.cut_short();
+    }
+    let worst = domain.of_move(layout, &bonds, step, floor);
+    match released {
+        Some(released) if !worst.is_out(floor) => released.or_worse(worst),
+        _ => worst,
+    }
+}
+
 impl<'a> Saturated<'a> {
     /// The space of a domain whose start has this margin and whose paths are no
     /// wider than `at_most`.
@@ -76,24 +94,6 @@ impl<'a> Saturated<'a> {
     /// The last transition, seen from either of its ends.
     fn finish(&self, arrival: Arrival, to: State) -> Transition<State, Action> {
         Transition { action: Action::Finish(arrival), to, cost: 0, width_at_most: self.at_most }
-    }
-
-    /// Margin of a move with the detachments before it.
-    fn of_move(&self, layout: &Layout, step: Move, floor: f64) -> Worst {
-        let bonds = kept(layout, step);
-        let released = match step.motion {
-            // When a translation begins, the module is held as after the detachments.
-            Motion::Translation { .. } => None,
-            Motion::Rotation { .. } => Some(self.domain.of_state(layout, &bonds)),
-        };
-        if let Some(released) = released.filter(|released| released.is_out(floor)) {
-            return released.cut_short();
-        }
-        let worst = self.domain.of_move(layout, &bonds, step, floor);
-        match released {
-            Some(released) if !worst.is_out(floor) => released.or_worse(worst),
-            _ => worst,
-        }
     }
 
     /// A state's margin with everything engaged, if that alone rules out every
@@ -142,7 +142,7 @@ impl Space for Saturated<'_> {
         let worst = match *action {
             Action::Move(step) => match self.settled_out(&to.layout, floor) {
                 Some(out) => out,
-                None => self.of_move(&from.layout, step, floor),
+                None => of_move(self.domain, &from.layout, step, floor),
             },
             Action::Finish(arrival) => self.domain.of_state(&from.layout, &self.domain.problem.goal().bonds(arrival)),
         };

@@ -1,7 +1,6 @@
 //! `plan START GOAL`
 
 use std::io;
-use std::path::Path;
 use std::process;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -61,7 +60,7 @@ fn plan<F: Family>(arguments: &PlanningArguments, problem: &F) -> io::Result<Exi
         }
     };
     if let Some(out) = &arguments.out
-        && let Err(trouble) = save(out, &document)
+        && let Err(trouble) = files::save(out, &document)
     {
         output::message(&format!("error: {}: {trouble}", out.display()))?;
         output::result(&document)?;
@@ -123,7 +122,7 @@ fn search<F: Family>(arguments: &PlanningArguments, problem: &F) -> Result<Resul
 }
 
 /// A flag that the first Ctrl-C raises; the second one ends the program.
-fn cancelled_by_interrupt() -> Result<Arc<AtomicBool>, String> {
+pub fn cancelled_by_interrupt() -> Result<Arc<AtomicBool>, String> {
     let cancel = Arc::new(AtomicBool::new(false));
     let raised = Arc::clone(&cancel);
     let on_interrupt = move || {
@@ -133,12 +132,4 @@ fn cancelled_by_interrupt() -> Result<Arc<AtomicBool>, String> {
     };
     ctrlc::set_handler(on_interrupt).map_err(|error| error.to_string())?;
     Ok(cancel)
-}
-
-/// Writes beside the file and renames, so that no half-written plan is left.
-fn save(path: &Path, text: &str) -> io::Result<()> {
-    let mut beside = path.as_os_str().to_owned();
-    beside.push(".part");
-    std::fs::write(&beside, text)?;
-    std::fs::rename(&beside, path)
 }

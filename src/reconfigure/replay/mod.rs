@@ -16,6 +16,7 @@ mod transit;
 use crate::robot::{Configuration, FaceConnection, Goal};
 use crate::statics::Bracket;
 
+use super::action::Action;
 use super::assembly::{Assembler, Touched};
 use super::plan::Plan;
 use super::refusal::{Refusal, check};
@@ -89,6 +90,23 @@ pub fn replay(start: &Configuration, goal: &Goal, plan: &Plan, required: f64) ->
     }
     let margin = found.iter().map(|f| f.margin).reduce(Bracket::min).expect("the start was checked");
     Ok(Replay { margin, actions_replayed, oracle_solves: checker.judge.solves, failures: checker.judge.failures })
+}
+
+/// The state after actions, each of which must be legal in the state that it is taken in; forces and collisions play no
+/// part.
+///
+/// # Errors
+/// The first action that is not legal, with why.
+pub fn after<'a>(
+    start: &Configuration,
+    actions: impl IntoIterator<Item = &'a Action>,
+) -> Result<Configuration, (usize, Fault)> {
+    let mut state = start.clone();
+    state.connections.sort_unstable();
+    for (index, action) in actions.into_iter().enumerate() {
+        state = transition(&state, action).map_err(|fault| (index, fault))?.after;
+    }
+    Ok(state)
 }
 
 /// Checks one legal action and says what margins it has.
