@@ -111,6 +111,7 @@ pub(super) fn statistics(wire: &wire::Statistics, place: &Place<'_>, findings: &
         generated: wire.generated.unwrap_or_else(|| certified.saturating_add(wire.decided_by_bounds)),
         certified,
         oracle_solves: wire.oracle_solves,
+        decided_by: Tally::default(),
         bytes: wire.memory_bytes.unwrap_or_default(),
         seconds: wire.seconds.0,
     };
