@@ -12,38 +12,53 @@ mod assembly_laws;
 mod assembly_tests;
 mod compose;
 mod course;
+mod decides;
+mod decision;
 mod domain;
 mod engines;
 mod goal;
+mod herald;
 mod heuristic;
+mod in_the_way;
 mod layout;
 pub mod linkage;
 mod local;
 mod moves;
 mod options;
 mod oracle;
+pub mod partial_order;
 mod plan;
 mod primitive;
 mod problem;
+mod recollection;
 mod refusal;
 pub mod replay;
 mod sampling;
 mod saturated;
 mod solve;
 mod step;
+mod stronger;
 mod surface;
 mod trace;
+mod wander;
+mod ways;
 mod worst;
 
+pub use crate::robot::{Motion, Turn};
 pub use action::Action;
 pub use engines::MARGIN_TOLERANCE;
+pub use in_the_way::InTheWay;
 pub use layout::{Bond, Layout, Placed};
-pub use moves::{Ability, Motion, Move, Turn, fitting};
-pub use options::{Event, Options, Reduction};
-pub use plan::{Bottleneck, Limit, Objective, Outcome, Plan, PlannedAction, Proof, Report, Statistics};
+pub use moves::Move;
+pub use options::{Event, Known, Method, News, Options, Pass, Reduction};
+pub use plan::{
+    Bottleneck, IfStronger, Limit, Moment, Objective, Outcome, Plan, PlannedAction, Proof, Report, Statistics,
+};
 pub use refusal::{Impossible, Refusal, Which};
 pub use solve::solve;
 pub use step::Step;
+pub use wander::{Walk, wander};
+pub use ways::{Ability, Way, fitting};
 
 #[cfg(test)]
 mod tests;

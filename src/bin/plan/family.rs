@@ -5,7 +5,7 @@ use std::fmt::Display;
 use steadfast::io::{LatticeProblem, LinkageProblem, PlanDocument, Unwritable, write_linkage_plan, write_plan};
 use steadfast::reconfigure::linkage::assembly::{BodyOf, Held, Touched};
 use steadfast::reconfigure::linkage::{self, Half};
-use steadfast::reconfigure::replay::{Replay, replay};
+use steadfast::reconfigure::replay::{Replay, appraise, replay};
 use steadfast::reconfigure::{self, Action, Event, Options, Plan, Refusal, Report, solve};
 use steadfast::robot::linkage::{Linkage, MICRO, Port, Spot};
 use steadfast::robot::{Cell, Configuration, FaceConnection};
@@ -15,7 +15,7 @@ pub trait Family: Sync {
     /// What its modules do.
     type Action: Clone + Send;
     /// What names one of its connections.
-    type Connection: Clone + Send;
+    type Connection: Copy + PartialEq + Send;
     /// What its modules can hit.
     type Touched: Display;
 
@@ -23,7 +23,7 @@ pub trait Family: Sync {
     ///
     /// # Errors
     /// What cannot be planned for.
-    fn solve(&self, options: &Options, on_event: &mut dyn FnMut(&Event)) -> Result<Answer<Self>, Refusal>;
+    fn solve(&self, options: &Options, on_event: &mut OnEvent<'_, Self>) -> Result<Answer<Self>, Refusal>;
 
     /// Checks a plan by code that shares no decision with the search.
     ///
@@ -34,6 +34,19 @@ pub trait Family: Sync {
         plan: &Plan<Self::Action, Self::Connection>,
         required: f64,
     ) -> Result<Replay<Self::Connection, Self::Touched>, Refusal>;
+
+    /// The plan with its margins over time and with what a stronger bottleneck would gain.
+    ///
+    /// # Errors
+    /// What cannot be replayed.
+    fn appraise(
+        &self,
+        plan: &Plan<Self::Action, Self::Connection>,
+        replay: &Replay<Self::Connection, Self::Touched>,
+    ) -> Result<Plan<Self::Action, Self::Connection>, Refusal>;
+
+    /// The id of a module of the start.
+    fn id(&self, module: usize) -> &str;
 
     /// A plan file.
     ///
@@ -57,17 +70,28 @@ pub trait Family: Sync {
 /// What a search answers to a problem.
 pub type Answer<F> = Report<<F as Family>::Action, <F as Family>::Connection>;
 
+/// What looks at a running search.
+pub type OnEvent<'e, F> = dyn FnMut(&Event<<F as Family>::Action, <F as Family>::Connection>) + 'e;
+
 impl Family for LatticeProblem {
     type Action = Action;
     type Connection = FaceConnection;
     type Touched = reconfigure::assembly::Touched;
 
-    fn solve(&self, options: &Options, on_event: &mut dyn FnMut(&Event)) -> Result<Report, Refusal> {
+    fn solve(&self, options: &Options, on_event: &mut OnEvent<'_, Self>) -> Result<Report, Refusal> {
         solve(&self.start, &self.goal, options, on_event)
     }
 
     fn replay(&self, plan: &Plan, required: f64) -> Result<Replay, Refusal> {
         replay(&self.start, &self.goal, plan, required)
+    }
+
+    fn appraise(&self, plan: &Plan, replay: &Replay) -> Result<Plan, Refusal> {
+        appraise(&self.start, &self.goal, plan, replay)
+    }
+
+    fn id(&self, module: usize) -> &str {
+        &self.start.modules[module].id
     }
 
     fn write(&self, report: &Report) -> Result<String, Unwritable> {
@@ -82,9 +106,10 @@ impl Family for LatticeProblem {
         let id = |module: usize| &self.start.modules[module].id;
         match action {
             Action::Attach(pair) | Action::Detach(pair) => format!("{} {}", action.kind(), faces(&self.start, pair)),
-            Action::Slide { module, to } => format!("slide  {} to {}", id(*module), cell(*to)),
-            Action::Pivot { module, support, to } => {
-                format!("pivot  {} about {} to {}", id(*module), id(*support), cell(*to))
+            Action::Move { motion, module, support, to } => {
+                let motion = &self.start.catalogue.motions[usize::from(*motion)].name;
+                let about = support.map_or_else(String::new, |support| format!("about {} ", id(support)));
+                format!("{motion:<6} {} {about}to {}", id(*module), cell(*to))
             }
         }
     }
@@ -103,12 +128,24 @@ impl Family for LinkageProblem {
     type Connection = Held;
     type Touched = Touched;
 
-    fn solve(&self, options: &Options, on_event: &mut dyn FnMut(&Event)) -> Result<Answer<Self>, Refusal> {
+    fn solve(&self, options: &Options, on_event: &mut OnEvent<'_, Self>) -> Result<Answer<Self>, Refusal> {
         linkage::solve(&self.start, &self.goal, options, on_event)
     }
 
     fn replay(&self, plan: &Plan<linkage::Action, Held>, required: f64) -> Result<Replay<Held, Touched>, Refusal> {
         linkage::replay::replay(&self.start, &self.goal, plan, required)
+    }
+
+    fn appraise(
+        &self,
+        plan: &Plan<linkage::Action, Held>,
+        replay: &Replay<Held, Touched>,
+    ) -> Result<Plan<linkage::Action, Held>, Refusal> {
+        linkage::replay::appraise(&self.start, &self.goal, plan, replay)
+    }
+
+    fn id(&self, module: usize) -> &str {
+        &self.start.modules[module].id
     }
 
     fn write(&self, report: &Answer<Self>) -> Result<String, Unwritable> {

@@ -12,18 +12,20 @@ use crate::reconfigure::worst::Worst;
 use crate::robot::linkage::{Goal, Linkage};
 
 use super::action::Action;
-use super::arrangement::Arrangement;
+use super::arrangement::{Arrangement, Frame};
 use super::assembly::Held;
 use super::compose::compose;
 use super::domain::{Domain, width};
+use super::places::PlaceId;
 use super::problem::Problem;
 use super::saturated::{self, Saturated};
 
 /// Plans how to get from `start` to `goal`, like [`solve`](crate::reconfigure::solve()) does for lattices: with the same
 /// guarantees, by moves that turn one side of a joint or of a connection on a ball.
 ///
-/// What is proved is about the goal as it is told apart here: balls turned as it says, but for turns that keep their grid of
-/// directions, and loaded or fixed modules described as it describes them, not by their symmetries. The
+/// What is proved is about the goal as it is told apart here: up to the symmetries of modules, of loaded ones those that keep
+/// the loads' points, and up to those turns of balls that keep their grid of directions, which are all 24 of a cube where
+/// everything is turned by quarters. Other turns of a ball count, and fixed modules as they are described. The
 /// [`replay`](super::replay::replay) takes a goal as met wherever masses and ports are alike, which may take fewer moves.
 ///
 /// # Errors
@@ -32,7 +34,7 @@ pub fn solve(
     start: &Linkage,
     goal: &Goal,
     options: &Options,
-    on_event: &mut dyn FnMut(&Event),
+    on_event: &mut dyn FnMut(&Event<Action, Held>),
 ) -> Result<Report<Action, Held>, Refusal> {
     let began = Instant::now();
     let required = options.min_margin.map_or(start.require.margin, |least| least.max(start.require.margin));
@@ -53,15 +55,28 @@ pub fn solve(
         Some(reason) => Report::impossible(options.objective, required, reason),
         None => {
             let space = Saturated::new(&domain, ends.width(), ends.at_most());
-            task.run_with(&space, &Plans(&domain), |search, floor| search.from_both_ends(floor), on_event)
+            task.run_with(&space, &Plans(&domain), &|search, floor| search.from_both_ends(floor), on_event)
         }
     };
+    let space = Saturated::new(&domain, ends.width(), ends.at_most());
+    report.in_the_way = task.in_the_way(&space, &Plans(&domain), &report, &|reached| unmoved(&domain, reached));
     if let Some(fault) = domain.oracle.fault() {
         return Err(Refusal::Structure(fault));
     }
     report.statistics.oracle_solves = domain.oracle.solves();
     report.statistics.seconds = began.elapsed().as_secs_f64();
     Ok(report)
+}
+
+/// The modules of the start, not fixed, whose places are taken by the like of them in all of these states; `None` where
+/// places do not tell, since robots are the same anywhere.
+fn unmoved(domain: &Domain, states: &[&saturated::State]) -> Option<Vec<usize>> {
+    let problem = domain.problem;
+    let places = domain.arrangements.of(&problem.described(&problem.start)).of_module;
+    let stays = |place: &PlaceId| states.iter().all(|state| state.arrangement.0.contains(place));
+    let unmoved =
+        places.iter().enumerate().filter(|(module, place)| !problem.start.modules[*module].fixed && stays(place));
+    (problem.frame == Frame::World).then(|| unmoved.map(|(module, _)| module).collect())
 }
 
 /// The two ends of every plan.
