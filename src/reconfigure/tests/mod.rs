@@ -5,6 +5,7 @@ mod heuristics;
 mod motions;
 mod outcomes;
 mod reports;
+mod restrictions;
 mod stencils;
 mod tampering;
 
