@@ -168,6 +168,7 @@ pub mod geometry;
 pub mod io;
 pub mod reconfigure;
 pub mod robot;
+pub mod schedule;
 pub mod spatial;
 pub mod statics;
 pub mod suite;

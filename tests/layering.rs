@@ -5,13 +5,14 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Each layer with the layers that it may use.
-const LAYERS: [(&str, &[&str]); 9] = [
+const LAYERS: [(&str, &[&str]); 10] = [
     ("spatial", &[]),
     ("statics", &["spatial"]),
     ("certificate", &["spatial", "statics"]),
     ("robot", &["spatial", "statics"]),
     ("geometry", &["spatial", "robot"]),
     ("reconfigure", &["spatial", "statics", "robot", "geometry"]),
+    ("schedule", &["spatial", "statics", "robot", "geometry", "reconfigure"]),
     ("generate", &["spatial", "statics", "robot", "geometry", "reconfigure"]),
     ("suite", &["spatial", "statics", "robot", "geometry", "reconfigure", "generate"]),
     ("io", &["spatial", "statics", "certificate", "robot", "geometry", "reconfigure", "generate", "suite"]),

@@ -136,7 +136,7 @@ prop_compose! {
         let mut linkage = Linkage {
             catalogue, gravity, environment: Environment { module_friction: friction, ..Environment::default() },
             modules: vec![first], connections: Vec::new(), loads: Vec::new(),
-            require: Requirement { margin, connected },
+            require: Requirement { margin, connected, ..Requirement::default() },
         };
         let mut codes = Vec::new();
         for growth in growths {
@@ -186,6 +186,8 @@ fn plan(linkage: &Linkage, drafts: &[Draft], margin: Option<Bracket>) -> Plan<Ac
         moves: drafts.len() as u32,
         bottleneck: Some(Bottleneck { action: Some(0), phase: 0.25, connection: held }),
         actions: drafts.iter().map(action).collect(),
+        profile: margin.into_iter().map(|margin| Moment { action: Some(0), phase: 0.5, margin }).collect(),
+        if_stronger: margin.map(|margin| IfStronger { factor: 2.0, margin }),
     }
 }
 

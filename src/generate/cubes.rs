@@ -71,7 +71,7 @@ fn modules_to_move(request: &Request) -> Result<usize, Failure> {
 }
 
 fn requirement(margin: f64) -> Requirement {
-    Requirement { margin, connected: true }
+    Requirement { margin, ..Requirement::default() }
 }
 
 /// Where cubes grow.

@@ -49,7 +49,7 @@ pub fn generate(request: &Request) -> Result<Generated, Failure> {
 }
 
 fn requirement(margin: f64) -> Requirement {
-    Requirement { margin, connected: true }
+    Requirement { margin, ..Requirement::default() }
 }
 
 /// One attempt at a shape; a goal's first module is where that of its start is.

@@ -22,6 +22,7 @@ mod form;
 mod json;
 mod layout;
 mod load_range_report;
+mod partial_order_report;
 mod plan_document;
 mod read;
 mod rofi;
@@ -42,6 +43,7 @@ pub use document::{
 };
 pub use form::Form;
 pub use load_range_report::LoadRangeReport;
+pub use partial_order_report::PartialOrderReport;
 pub use plan_document::{Contradiction, LinkagePlanDocument, PlanDocument};
 pub use read::{
     Message, Results, read_catalogue, read_certificate, read_checkable, read_configuration, read_linkage,
@@ -52,6 +54,6 @@ pub use schema::{schema, schema_names};
 pub use turn::AxisAngle;
 pub use write::{
     Unwritable, in_space_because, write_catalogue, write_certificate, write_check, write_configuration, write_goal,
-    write_linkage, write_linkage_goal, write_linkage_plan, write_load_range, write_plan, write_point, write_result,
-    write_rofi, write_structure,
+    write_linkage, write_linkage_goal, write_linkage_plan, write_load_range, write_partial_order, write_plan,
+    write_point, write_result, write_rofi, write_structure,
 };

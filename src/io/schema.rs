@@ -9,13 +9,14 @@ use serde_json::Value;
 use super::{layout, wire};
 
 /// The formats that have a schema.
-const NAMES: [&str; 12] = [
+const NAMES: [&str; 13] = [
     "structure",
     "catalogue",
     "configuration",
     "plan",
     "check",
     "load-range",
+    "partial-order",
     "certificate",
     "suite",
     "result",
@@ -24,7 +25,7 @@ const NAMES: [&str; 12] = [
     "rofi-voxels",
 ];
 
-static SCHEMAS: LazyLock<[Value; 12]> = LazyLock::new(|| {
+static SCHEMAS: LazyLock<[Value; 13]> = LazyLock::new(|| {
     [
         generate::<wire::Structure>(),
         generate::<wire::Catalogue>(),
@@ -32,6 +33,7 @@ static SCHEMAS: LazyLock<[Value; 12]> = LazyLock::new(|| {
         generate::<wire::Plan>(),
         generate::<wire::Check>(),
         generate::<wire::LoadRange>(),
+        generate::<wire::PartialOrder>(),
         generate::<wire::Certificate>(),
         generate::<wire::Suite>(),
         generate::<wire::JobResult>(),

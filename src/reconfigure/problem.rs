@@ -7,7 +7,7 @@
 use crate::robot::{Cell, Configuration, FaceConnection, Goal, ModuleLoad, Orientation, Placement, Port};
 
 use super::goal::GoalTest;
-use super::heuristic::Reach;
+use super::heuristic::{Reach, Targets};
 use super::layout::{Bond, Layout, Placed};
 use super::moves::Move;
 use super::refusal::{Rejection, check};
@@ -99,6 +99,11 @@ impl Problem {
         way.map_or_else(Vec::new, |way| way.needs(step.from).collect())
     }
 
+    /// A layout of this problem's modules as what is to be reached.
+    pub fn targets(&self, layout: &Layout) -> Targets {
+        Targets::new(layout, self.abilities.iter().map(Reach::of).collect())
+    }
+
     /// Whether the orientation of any module matters.
     pub fn turns(&self) -> bool {
         self.classes.iter().any(|class| class.turns)
@@ -107,6 +112,16 @@ impl Problem {
     /// Whether all modules must stay connected.
     pub fn must_stay_connected(&self) -> bool {
         self.start.require.connected
+    }
+
+    /// The modules of the start, not fixed, whose places are filled by the like of them in all of these layouts.
+    pub fn unmoved(&self, layouts: &[&Layout]) -> Vec<usize> {
+        let modules = self.start.modules.iter().zip(&self.class_of).enumerate();
+        let stays = |cell: Cell, class: u16| {
+            layouts.iter().all(|layout| layout.at(cell).is_some_and(|at| layout.placed()[at].class == class))
+        };
+        let unmoved = modules.filter(|(_, (module, class))| !module.fixed && stays(module.placement.cell, **class));
+        unmoved.map(|(index, _)| index).collect()
     }
 
     /// A placement for every module of the start that represents `layout`: the

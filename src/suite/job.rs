@@ -173,5 +173,6 @@ pub const fn objective_name(objective: Objective) -> &'static str {
     match objective {
         Objective::Margin => "margin",
         Objective::Moves => "moves",
+        Objective::Pareto => "pareto",
     }
 }

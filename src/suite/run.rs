@@ -126,6 +126,7 @@ impl<'a, 'b> Diary<'a, 'b> {
             alternatives: Vec::new(),
             alternatives_cut_by: None,
             proof: Proof { optimal: false, margin_at_most, moves_at_least },
+            in_the_way: None,
             statistics: Statistics { seconds, ..Statistics::default() },
         }
     }

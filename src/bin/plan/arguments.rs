@@ -6,6 +6,8 @@ use std::time::Duration;
 use crate::{bench, generate};
 use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
 
+use crate::restrictions::Restrictions;
+
 /// Reconfiguration planner for modular robots in which every transient state is proved stable
 #[derive(Debug, Parser)]
 #[command(
@@ -62,6 +64,9 @@ pub struct PlanningArguments {
     /// Write the plan/1 document to a file
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
+    /// Write the plan's margins over time: .csv as a table, .svg as a picture
+    #[arg(long, value_name = "FILE", value_parser = profile_file)]
+    pub profile: Option<PathBuf>,
     /// Plan by geometry alone, for comparison; `plan verify` tells where such a plan breaks
     #[arg(long)]
     pub ignore_stability: bool,
@@ -71,6 +76,8 @@ pub struct PlanningArguments {
     /// How to look for plans of lattice robots
     #[arg(long, value_enum, default_value_t = PlannerArgument::Auto)]
     pub planner: PlannerArgument,
+    #[command(flatten)]
+    pub restrictions: Restrictions,
 }
 
 /// `--planner`.
@@ -91,6 +98,17 @@ pub enum ObjectiveArgument {
     Margin,
     /// The fewest moves with at least the required margin
     Moves,
+    /// Every trade between margin and moves that no other plan beats
+    Pareto,
+}
+
+fn profile_file(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    let extension = path.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase);
+    match extension.as_deref() {
+        Some("csv" | "svg") => Ok(path),
+        _ => Err("a profile is written as .csv or .svg".to_string()),
+    }
 }
 
 fn margin(text: &str) -> Result<f64, String> {
@@ -119,6 +137,8 @@ pub enum Command {
     /// Map where a strut may stand over its node, or a joint in its range, and with what margin
     #[command(after_help = MOTION_EXIT_CODES)]
     MotionRange(MotionRangeArguments),
+    /// Say which actions of a plan may run at the same time, so that whatever overlaps is stable throughout
+    Parallel(ParallelArguments),
     /// Write a robot in another format: a configuration/1 file, or one of the RoFI platform's
     Convert(ConvertArguments),
     /// Draw a random problem: a start and a goal that both stand
@@ -244,6 +264,44 @@ fn margin_to_leave(text: &str) -> Result<f64, String> {
 pub struct VerifyArguments {
     /// A plan/1 or certificate/1 file; `-` reads standard input
     pub file: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub struct ParallelArguments {
+    /// A plan/1 file for lattice modules; `-` reads standard input
+    pub file: PathBuf,
+    /// How many modules may move at once
+    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=8))]
+    pub most: u32,
+    /// Margin that every state must have [default: what the plan was made for]
+    #[arg(long, value_name = "X", value_parser = margin)]
+    pub min_margin: Option<f64>,
+    /// How long a move takes, in any unit
+    #[arg(long, value_name = "T", default_value_t = 1.0, value_parser = duration)]
+    pub move_time: f64,
+    /// How long attaching or detaching takes, in the same unit
+    #[arg(long, value_name = "T", default_value_t = 0.1, value_parser = duration)]
+    pub latch_time: f64,
+    /// Seconds after which what was not looked at keeps the plan's order
+    #[arg(long, value_name = "S", value_parser = seconds)]
+    pub time_limit: Option<Duration>,
+    /// Print a partial-order/1 document (and errors as an errors/1 document)
+    #[arg(long)]
+    pub json: bool,
+    /// Write a chart of when each action runs
+    #[arg(long, value_name = "FILE")]
+    pub svg: Option<PathBuf>,
+    /// Write the graph for Graphviz
+    #[arg(long, value_name = "FILE")]
+    pub dot: Option<PathBuf>,
+}
+
+fn duration(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() && value >= 0.0 => Ok(value),
+        Ok(_) => Err("a duration is finite and not negative".to_string()),
+        Err(error) => Err(error.to_string()),
+    }
 }
 
 #[derive(Debug, Args)]

@@ -11,6 +11,7 @@ mod exit;
 mod explain;
 mod family;
 mod files;
+mod gantt;
 mod generate;
 mod gives_way;
 mod load_range;
@@ -18,8 +19,11 @@ mod memory;
 mod motion_range;
 mod order;
 mod output;
+mod parallel;
 mod polar_map;
+mod profile;
 mod progress;
+mod restrictions;
 mod schema;
 mod search;
 mod summary;
@@ -44,6 +48,7 @@ fn main() -> ExitCode {
         (Some(Command::LoadRange(range)), _) => load_range::run(&range),
         (Some(Command::Generate(generate)), _) => generate::run(&generate),
         (Some(Command::Bench(bench)), _) => bench::run(&bench),
+        (Some(Command::Parallel(parallel)), _) => parallel::run(&parallel),
         (Some(Command::Schema(schema)), _) => schema::run(&schema),
         (None, Some(planning)) => search::run(&planning),
         (None, None) => {

@@ -129,6 +129,7 @@ fn objective(wire: wire::Objective) -> Objective {
     match wire {
         wire::Objective::Margin => Objective::Margin,
         wire::Objective::Moves => Objective::Moves,
+        wire::Objective::Pareto => Objective::Pareto,
     }
 }
 

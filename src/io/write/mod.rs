@@ -7,11 +7,13 @@ mod configuration;
 mod connector;
 mod errors;
 mod gives_way;
+mod in_the_way;
 mod lattice_plan;
 mod linkage;
 mod linkage_plan;
 mod load_range;
 mod outcome;
+mod partial_order;
 mod plan;
 mod result;
 mod rofi;
@@ -31,6 +33,7 @@ use super::diagnostics::Diagnostics;
 use super::document::NamedStructure;
 use super::form::Form;
 use super::load_range_report::LoadRangeReport;
+use super::partial_order_report::PartialOrderReport;
 use super::plan_document::{LinkagePlanDocument, PlanDocument};
 use super::{layout, wire};
 use crate::robot::linkage::{self as linkage_core, Linkage};
@@ -65,6 +68,14 @@ impl std::error::Error for Unwritable {}
 /// A number that is not finite, other than an unlimited limit of a box.
 pub fn write_structure(structure: &NamedStructure) -> Result<String, Unwritable> {
     text(&structure::wire(structure))
+}
+
+/// Writes a `partial-order/1` report about the best plan of a document.
+///
+/// # Errors
+/// A number that is not finite, or a document without a plan.
+pub fn write_partial_order(document: &PlanDocument, report: &PartialOrderReport<'_>) -> Result<String, Unwritable> {
+    text(&partial_order::wire(document, report)?)
 }
 
 /// Writes a `configuration/1` file that reads back equal, bit for bit. A

@@ -3,9 +3,10 @@
 use petgraph::unionfind::UnionFind;
 use rayon::prelude::*;
 
-use crate::geometry::{Solid, Surroundings, first_collision};
+use crate::geometry::{Solid, Surrounding, Surroundings, first_collision};
 use crate::reconfigure::assembly::{Assembler, Engagement, Moving, Touched, Transient};
 use crate::reconfigure::refusal::Refusal;
+use crate::reconfigure::stronger::strengthen;
 use crate::robot::{Configuration, FaceConnection, Placement, Port};
 use crate::statics::{Question, assess};
 
@@ -18,13 +19,23 @@ use super::legality::Path;
 pub(super) struct Checker<'a> {
     assembler: &'a Assembler<'a>,
     surroundings: Surroundings,
+    off_limits: Surroundings,
+    /// A connection that is taken to be so many times as strong as it is.
+    stronger: Option<(FaceConnection, f64)>,
     pub judge: Judge<FaceConnection, Touched>,
 }
 
 impl<'a> Checker<'a> {
-    pub fn new(start: &'a Configuration, assembler: &'a Assembler<'a>, required: f64) -> Self {
+    pub fn new(
+        start: &'a Configuration,
+        assembler: &'a Assembler<'a>,
+        required: f64,
+        stronger: Option<(FaceConnection, f64)>,
+    ) -> Self {
         let surroundings = Surroundings::new(&start.environment);
-        Self { assembler, surroundings, judge: Judge::new(required, start.require.connected) }
+        let off_limits = Surroundings::new(&start.require.off_limits());
+        let judge = Judge::new(required, start.require.connected);
+        Self { assembler, surroundings, off_limits, stronger, judge }
     }
 
     /// Checks a state at rest.
@@ -70,6 +81,9 @@ impl<'a> Checker<'a> {
         if let Some((phase, with)) = first {
             self.judge.fail(Some(action), Some(phase), Fault::Collision { with }, None);
         }
+        if let Some((phase, Surrounding::Obstacle(region))) = self.off_limits.first_collision(&moving, &path.motion) {
+            self.judge.fail(Some(action), Some(phase), Fault::KeepOut { region }, None);
+        }
     }
 
     fn sample(
@@ -78,7 +92,11 @@ impl<'a> Checker<'a> {
         state: &Transient,
         phase: f64,
     ) -> Result<Sample<FaceConnection>, Refusal> {
-        let assembly = self.assembler.assemble(state);
+        let mut assembly = self.assembler.assemble(state);
+        if let Some((held, factor)) = self.stronger {
+            let is_it = |index: usize| ports(modules, &state.engaged[assembly.connections[index]]) == held;
+            strengthen(&mut assembly.structure, factor, is_it);
+        }
         let assessment = assess(&assembly.structure, Question::VALUE).map_err(Refusal::Structure)?;
         let connection = |i: usize| ports(modules, &state.engaged[assembly.connections[i]]);
         let limit = assessment.utilisation.lower * (1.0 - claims::AT_LIMIT);

@@ -5,6 +5,8 @@ mod heuristics;
 mod motions;
 mod outcomes;
 mod reports;
+mod restrictions;
+mod stencils;
 mod tampering;
 
 use std::sync::Arc;
