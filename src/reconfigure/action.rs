@@ -38,6 +38,14 @@ impl Action {
         matches!(self, Self::Slide { .. } | Self::Pivot { .. })
     }
 
+    /// The module that it moves.
+    pub const fn moved(&self) -> Option<usize> {
+        match self {
+            Self::Slide { module, .. } | Self::Pivot { module, .. } => Some(*module),
+            Self::Attach(_) | Self::Detach(_) => None,
+        }
+    }
+
     /// Its kind as plans write it.
     pub const fn kind(&self) -> &'static str {
         match self {

@@ -9,9 +9,9 @@ use crate::spatial::{Pose, Rotation, Vec3};
 use crate::statics::Bracket;
 
 use super::course::motion;
-use super::layout::{Bond, Layout};
+use super::layout::{Bond, Layout, Placed};
 use super::local::{Memo, Neighbourhood, plane};
-use super::moves::{Motion, Move, fitting};
+use super::moves::{Motion, Move, fitting, fitting_of};
 use super::oracle::{Oracle, Worst};
 use super::problem::Problem;
 
@@ -53,12 +53,22 @@ impl<'a> Domain<'a> {
     /// obstacles, in a fixed order, whatever is engaged.
     pub fn moves(&self, layout: &Layout) -> Vec<Move> {
         let mut moves = fitting(layout, |class| self.problem.ability(class));
-        moves.retain(|&step| self.is_clear(layout, step));
+        moves.retain(|&step| {
+            let class = layout.placed()[layout.at(step.from).expect("a fitting move has a module")].class;
+            self.is_clear(class, step)
+        });
         moves
     }
 
-    fn is_clear(&self, layout: &Layout, step: Move) -> bool {
-        let class = layout.placed()[layout.at(step.from).expect("a fitting move has a module")].class;
+    /// The moves of one module that fit among the others of `layout`, which need not hold it, and
+    /// hit neither ground nor obstacles.
+    pub fn moves_of(&self, layout: &Layout, placed: &Placed) -> Vec<Move> {
+        let mut moves = fitting_of(layout, placed, |class| self.problem.ability(class));
+        moves.retain(|&step| self.is_clear(placed.class, step));
+        moves
+    }
+
+    fn is_clear(&self, class: u16, step: Move) -> bool {
         let module_type = self.problem.class(class).module_type;
         self.clear.get((step, module_type), |_| {
             let shape = self.problem.start().catalogue.module_types[module_type].body().shape.clone();

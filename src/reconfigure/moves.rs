@@ -239,21 +239,21 @@ pub fn pivot_axis(support: Face, towards: Face) -> Face {
 /// Every move that fits among the cubes of `layout`, whatever is engaged. In a
 /// fixed order: by the moving module's cell, slides before pivots.
 pub fn fitting(layout: &Layout, ability: impl Fn(u16) -> Ability) -> Vec<Move> {
-    let mut moves = Vec::new();
-    for placed in layout.placed() {
-        let able = ability(placed.class);
-        let hinged =
-            |support| layout.at(neighbour(placed.cell, support)).map(|at| ability(layout.placed()[at].class).hinge);
-        let slides = Face::ALL.into_iter().filter(|_| able.slide).map(|direction| Motion::Slide { direction });
-        let supports =
-            Face::ALL.into_iter().filter(|&support| able.pivot && able.hinge && hinged(support) == Some(true));
-        let pivots = supports.flat_map(|support| {
-            perpendicular(support).flat_map(move |towards| {
-                [Turn::Quarter, Turn::Half].map(|turn| Motion::Pivot { support, towards, turn })
-            })
-        });
-        let motions = slides.chain(pivots).map(|motion| Move { from: placed.cell, motion });
-        moves.extend(motions.filter(|candidate| candidate.fits(layout)));
-    }
-    moves
+    layout.placed().iter().flat_map(|placed| fitting_of(layout, placed, &ability)).collect()
+}
+
+/// Every move of one module that fits among the other cubes of `layout`, slides before pivots.
+pub fn fitting_of(layout: &Layout, placed: &Placed, ability: impl Fn(u16) -> Ability) -> Vec<Move> {
+    let able = ability(placed.class);
+    let hinged =
+        |support| layout.at(neighbour(placed.cell, support)).map(|at| ability(layout.placed()[at].class).hinge);
+    let slides = Face::ALL.into_iter().filter(|_| able.slide).map(|direction| Motion::Slide { direction });
+    let supports = Face::ALL.into_iter().filter(|&support| able.pivot && able.hinge && hinged(support) == Some(true));
+    let pivots = supports.flat_map(|support| {
+        perpendicular(support).flat_map(move |towards| {
+            [Turn::Quarter, Turn::Half].map(|turn| Motion::Pivot { support, towards, turn })
+        })
+    });
+    let motions = slides.chain(pivots).map(|motion| Move { from: placed.cell, motion });
+    motions.filter(|candidate| candidate.fits(layout)).collect()
 }

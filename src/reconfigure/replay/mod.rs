@@ -7,6 +7,7 @@
 //! assembly of structures and the oracle.
 
 mod arrival;
+mod bounded;
 pub(super) mod claims;
 pub(super) mod failure;
 pub(super) mod judge;
@@ -16,6 +17,7 @@ mod transit;
 use crate::robot::{Configuration, FaceConnection, Goal};
 use crate::statics::Bracket;
 
+use super::action::Action;
 use super::assembly::{Assembler, Touched};
 use super::plan::Plan;
 use super::refusal::{Refusal, check};
@@ -63,10 +65,12 @@ pub fn replay(start: &Configuration, goal: &Goal, plan: &Plan, required: f64) ->
     let mut state = start.clone();
     state.connections.sort_unstable();
 
-    let at_start = checker.rest(None, &state)?;
+    let at_start = checker.rest(None, &state, None)?;
     let mut found = vec![at_start];
     let mut legal = true;
+    let movers = neighbouring_movers(plan);
     for (index, planned) in plan.actions.iter().enumerate() {
+        let bound = planned.margin.and_then(|claim| claims::bound(&claim, planned.action.is_move()));
         match transition(&state, &planned.action) {
             Err(fault) => {
                 checker.judge.fail(Some(index), None, fault, None);
@@ -76,7 +80,8 @@ pub fn replay(start: &Configuration, goal: &Goal, plan: &Plan, required: f64) ->
             Ok(next) => {
                 let bottleneck = plan.bottleneck.as_ref().filter(|b| b.action == Some(index)).map(|b| b.phase);
                 let claimed: Vec<f64> = planned.phase.into_iter().chain(bottleneck).collect();
-                found.push(take(&mut checker, index, &state, &next, &claimed)?);
+                let by = Hint { claimed: &claimed, bound, hanging: movers[index] };
+                found.push(take(&mut checker, index, &state, &next, &by)?);
                 state = next.after;
             }
         }
@@ -88,7 +93,38 @@ pub fn replay(start: &Configuration, goal: &Goal, plan: &Plan, required: f64) ->
         checker.judge.fail(None, None, fault, None);
     }
     let margin = found.iter().map(|f| f.margin).reduce(Bracket::min).expect("the start was checked");
-    Ok(Replay { margin, actions_replayed, oracle_solves: checker.judge.solves, failures: checker.judge.failures })
+    let oracle_solves = checker.judge.solves + checker.bounds.solves();
+    Ok(Replay { margin, actions_replayed, oracle_solves, failures: checker.judge.failures })
+}
+
+/// What a plan says about an action that tells where and how tightly to look. Wrong hints cost time only.
+struct Hint<'a> {
+    /// Phases that are spoken of.
+    claimed: &'a [f64],
+    /// The margin that is to be confirmed, where the plan claims no value.
+    bound: Option<f64>,
+    /// Modules that may hang on all others, the likeliest first.
+    hanging: [Option<usize>; 2],
+}
+
+/// For every action the modules that are moved by the last move and by the next one: after a move or attaching the
+/// former is likely to hang on the others, before a move the latter.
+fn neighbouring_movers(plan: &Plan) -> Vec<[Option<usize>; 2]> {
+    let mut last = None;
+    let mut movers: Vec<[Option<usize>; 2]> = Vec::with_capacity(plan.actions.len());
+    for planned in &plan.actions {
+        last = planned.action.moved().or(last);
+        movers.push([last, None]);
+    }
+    let mut next = None;
+    for (planned, pair) in plan.actions.iter().zip(&mut movers).rev() {
+        pair[1] = next;
+        if matches!(planned.action, Action::Detach(_)) {
+            pair.swap(0, 1);
+        }
+        next = planned.action.moved().or(next);
+    }
+    movers
 }
 
 /// Checks one legal action and says what margins it has.
@@ -97,12 +133,13 @@ fn take(
     index: usize,
     before: &Configuration,
     next: &Transition,
-    claimed: &[f64],
+    by: &Hint,
 ) -> Result<Found<FaceConnection>, Refusal> {
     let during = match &next.path {
-        Some(path) => Some(checker.transit(index, before, path, claimed)?),
+        Some(path) => Some(checker.transit(index, before, path, by.claimed, by.bound)?),
         None => None,
     };
-    let rest = checker.rest(Some(index), &next.after)?;
+    let bounded = by.bound.map(|bound| (bound, by.hanging));
+    let rest = checker.rest(Some(index), &next.after, bounded)?;
     Ok(during.map_or(rest.clone(), |during| during.followed_by(rest)))
 }

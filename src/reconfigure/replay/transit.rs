@@ -9,6 +9,7 @@ use crate::reconfigure::refusal::Refusal;
 use crate::robot::{Configuration, FaceConnection, Placement, Port};
 use crate::statics::{Question, assess};
 
+use super::bounded::Bounds;
 use super::claims;
 use super::failure::Fault;
 use super::judge::{Found, Judge, Sample, phases};
@@ -18,17 +19,29 @@ use super::legality::Path;
 pub(super) struct Checker<'a> {
     assembler: &'a Assembler<'a>,
     surroundings: Surroundings,
+    pub bounds: Bounds<'a>,
     pub judge: Judge<FaceConnection, Touched>,
 }
 
 impl<'a> Checker<'a> {
     pub fn new(start: &'a Configuration, assembler: &'a Assembler<'a>, required: f64) -> Self {
         let surroundings = Surroundings::new(&start.environment);
-        Self { assembler, surroundings, judge: Judge::new(required, start.require.connected) }
+        Self { assembler, surroundings, bounds: Bounds::new(start), judge: Judge::new(required, start.require.connected) }
     }
 
-    /// Checks a state at rest.
-    pub fn rest(&mut self, action: Option<usize>, state: &Configuration) -> Result<Found<FaceConnection>, Refusal> {
+    /// Checks a state at rest: whether it has a margin, by bounds with one of two modules hanging on the others, where
+    /// that is enough; else its value.
+    pub fn rest(
+        &mut self,
+        action: Option<usize>,
+        state: &Configuration,
+        bounded: Option<(f64, [Option<usize>; 2])>,
+    ) -> Result<Found<FaceConnection>, Refusal> {
+        if let Some((least, hanging)) = bounded
+            && let Some(sample) = self.bounds.at_rest(state, hanging.into_iter().flatten(), least)
+        {
+            return Ok(self.judge.rest(action, sample));
+        }
         let placements: Vec<Placement> = state.modules.iter().map(|module| module.placement).collect();
         let engaged: Vec<_> = state.connections.iter().map(|c| Engagement::face(state, c)).collect();
         let at_rest = Transient { placements: &placements, moving: None, engaged: &engaged };
@@ -36,18 +49,23 @@ impl<'a> Checker<'a> {
         Ok(self.judge.rest(action, sample))
     }
 
-    /// Checks a move from a state on a fixed grid of phases, and at those claimed.
+    /// Checks a move from a state on a fixed grid of phases, and at those claimed: whether it has a margin, by bounds,
+    /// where that is enough; else its values.
     pub fn transit(
         &mut self,
         action: usize,
         before: &Configuration,
         path: &Path,
         claimed: &[f64],
+        bound: Option<f64>,
     ) -> Result<Found<FaceConnection>, Refusal> {
         self.collide(action, before, path);
+        let phases = phases(path.steps, claimed);
+        if let Some(samples) = bound.and_then(|least| self.bounds.of_move(before, path, &phases, least)) {
+            return Ok(self.judge.transit(action, samples));
+        }
         let placements: Vec<Placement> = before.modules.iter().map(|module| module.placement).collect();
         let start = before.pose(path.module);
-        let phases = phases(path.steps, claimed);
         let samples = phases.par_iter().map(|&phase| {
             let moving = Moving { module: path.module, pose: path.motion.pose(&start, phase) };
             let state = Transient { placements: &placements, moving: Some(moving), engaged: &path.engaged };
