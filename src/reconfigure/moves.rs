@@ -250,9 +250,8 @@ pub fn fitting_of(layout: &Layout, placed: &Placed, ability: impl Fn(u16) -> Abi
     let slides = Face::ALL.into_iter().filter(|_| able.slide).map(|direction| Motion::Slide { direction });
     let supports = Face::ALL.into_iter().filter(|&support| able.pivot && able.hinge && hinged(support) == Some(true));
     let pivots = supports.flat_map(|support| {
-        perpendicular(support).flat_map(move |towards| {
-            [Turn::Quarter, Turn::Half].map(|turn| Motion::Pivot { support, towards, turn })
-        })
+        perpendicular(support)
+            .flat_map(move |towards| [Turn::Quarter, Turn::Half].map(|turn| Motion::Pivot { support, towards, turn }))
     });
     let motions = slides.chain(pivots).map(|motion| Move { from: placed.cell, motion });
     motions.filter(|candidate| candidate.fits(layout)).collect()

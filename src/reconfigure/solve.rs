@@ -12,7 +12,7 @@ use super::action::Action;
 use super::compose::{compose, expand, ports};
 use super::domain::{Domain, width};
 use super::engines::{Task, Translation};
-use super::large::{self, decompose, EXACT_MODULES};
+use super::large::{self, EXACT_MODULES, decompose};
 use super::options::{Event, Method, Options, Reduction};
 use super::oracle::Worst;
 use super::plan::{Plan, Report};

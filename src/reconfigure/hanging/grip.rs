@@ -43,8 +43,7 @@ fn grip(configuration: &Configuration, state: &Transient, module: usize, held: &
     };
     let moving = state.moving.filter(|moving| moving.module == module).map(|moving| Moving { module: 1, ..moving });
     let placements = [state.placements[support], state.placements[module]];
-    let assembly =
-        Assembler::new(&pair).assemble(&Transient { placements: &placements, moving, engaged: &[engaged] });
+    let assembly = Assembler::new(&pair).assemble(&Transient { placements: &placements, moving, engaged: &[engaged] });
     let assessment = assess(&assembly.structure, Question::VALUE).ok()?;
     let weight_at = assembly.structure.bodies[1].com;
     Some(Grip { support, utilisation: assessment.utilisation, weight_at })

@@ -25,8 +25,11 @@ const DETOURS: usize = 6;
 /// Places that are tried for one module before the next one is.
 const PLACES: usize = 3;
 
+/// Carries that bring no more modules home than before, beside three for each that is not, before it counts as a dead end.
+const IDLE: usize = 12;
+
 /// Carries per module, in all, after which an attempt gives up.
-const CARRIES: usize = 12;
+const CARRIES: usize = 8;
 
 /// One module carried from one cell to another.
 #[derive(Clone, Debug)]
@@ -37,8 +40,8 @@ pub struct Carry {
     pub margin: f64,
 }
 
-/// What a caller hears of an attempt: modules that are not yet in place, moves so far; says whether to go on.
-pub type Watch<'w> = dyn FnMut(usize, usize) -> bool + 'w;
+/// What a caller hears of an attempt: how many modules are not yet in place; says whether to go on.
+pub type Watch<'w> = dyn FnMut(usize) -> bool + 'w;
 
 /// How an attempt ended.
 #[derive(Clone, Debug)]
@@ -101,19 +104,22 @@ impl<'a> Builder<'a> {
     /// met twice, other carries follow.
     pub fn run(mut self, ways: &mut Ways<'a>, rests: &mut Rests<'a>, watch: &mut Watch) -> Attempt {
         let modules = self.layout.placed().len();
-        let mut undo = 1;
+        let (mut undo, mut fewest, mut idle) = (1, usize::MAX, 0);
         for _ in 0..CARRIES * modules.max(1) {
             let left = surplus(&self.layout, self.targets);
             if left.is_empty() {
                 return Attempt::Done(self.carries);
             }
-            let moves = self.carries.iter().map(|carry| carry.path.len()).sum();
-            if !watch(left.len(), moves) {
+            if !watch(left.len()) {
                 return Attempt::Stopped;
             }
-            if self.carry_one(&left, ways, rests) {
+            idle = if left.len() < fewest { 0 } else { idle + 1 };
+            fewest = fewest.min(left.len());
+            // To wander about without bringing more modules home is a dead end as well.
+            if idle <= IDLE + 3 * fewest && self.carry_one(&left, ways, rests) {
                 continue;
             }
+            idle = 0;
             if self.carries.is_empty() || self.patience == 0 {
                 return Attempt::Stuck;
             }
@@ -144,7 +150,9 @@ impl<'a> Builder<'a> {
         // What is buried, or closed off, comes free by what is nearest to it.
         let buried = left.iter().map(|placed| placed.cell).chain(vacant.keys().copied());
         let nearest = distances(buried, |cell| self.layout.is_filled(cell));
-        covers.sort_by_key(|placed| (nearest.get(&placed.cell).copied().unwrap_or(u32::MAX), lot(self.seed, placed.cell)));
+        covers.sort_by_key(|placed| {
+            (nearest.get(&placed.cell).copied().unwrap_or(u32::MAX), lot(self.seed, placed.cell))
+        });
         if covers.iter().any(|&cover| self.carry(cover, &to_fill, ways, rests)) {
             return true;
         }
@@ -234,13 +242,7 @@ impl<'a> Builder<'a> {
     }
 
     /// Whether a module may be put into a cell.
-    fn suits(
-        &self,
-        mover: Placed,
-        cell: Cell,
-        ranked: &BTreeMap<Cell, (u32, i32, u64)>,
-        rest: &Layout,
-    ) -> bool {
+    fn suits(&self, mover: Placed, cell: Cell, ranked: &BTreeMap<Cell, (u32, i32, u64)>, rest: &Layout) -> bool {
         let Some(rank) = ranked.get(&cell) else { return false };
         let is_wanted = self.targets.get(&cell) == Some(&mover.class);
         // Where nothing is wanted, only steps ahead count.

@@ -62,31 +62,35 @@ pub fn decompose(
     let stopped_by = || {
         let cancelled = options.cancel.as_ref().is_some_and(|cancel| cancel.load(Ordering::Relaxed));
         let late = deadline.is_some_and(|deadline| Instant::now() >= deadline);
-        if cancelled {
-            Some(Limit::Cancelled)
-        } else {
-            late.then_some(Limit::Deadline)
-        }
+        if cancelled { Some(Limit::Cancelled) } else { late.then_some(Limit::Deadline) }
     };
+    // Every module that is not where the goal wants one moves at least once. In a free frame others might stay.
+    let fewest = if problem.goal().is_free() { 0 } else { shape::surplus(problem.start_layout(), &targets).len() };
     let mut plan: Option<Plan> = None;
     let mut stopped = None;
     let mut statistics = Statistics::default();
     let mut levels = Levels::new(domain, required, ends.at_most());
-    'levels: while let Some(floor) = levels.next(&ways) {
-        let is_last = levels.is_last();
-        let patience = PATIENCE[usize::from(is_last)];
-        for attempt in 0..if is_last { ATTEMPTS } else { 1 } {
+    while let Some(floor) = levels.next(&ways) {
+        let is_required = levels.is_required();
+        let patience = PATIENCE[usize::from(is_required)];
+        let mut is_attained = false;
+        for attempt in 0..if is_required { ATTEMPTS } else { 1 } {
             let seed = options.seed.wrapping_add(attempt);
-            let mut watch = |left: usize, moves: usize| {
+            let mut watch = |left: usize| {
                 statistics.expanded += 1;
-                let spent = planners::Statistics { expanded: statistics.expanded, ..planners::Statistics::default() };
+                statistics.states = statistics.states.max((targets.len() - left) as u64);
+                let spent = planners::Statistics {
+                    expanded: statistics.expanded,
+                    states: left,
+                    ..planners::Statistics::default()
+                };
                 let progress = Progress {
                     pass: Pass::Shortest,
                     statistics: spent,
-                    best_width: None,
+                    best_width: plan.as_ref().and_then(|plan| plan.margin).map(|margin| margin.lower),
                     width_at_most: ends.at_most(),
-                    best_cost: None,
-                    cost_at_least: u32::try_from(moves + left).unwrap_or(u32::MAX),
+                    best_cost: plan.as_ref().map(|plan| plan.moves),
+                    cost_at_least: u32::try_from(fewest).unwrap_or(u32::MAX),
                 };
                 on_event(&Event { progress, oracle_solves: domain.oracle.solves() });
                 stopped = stopped_by();
@@ -94,18 +98,25 @@ pub fn decompose(
             };
             match Builder::new(domain, &targets, floor, seed, patience).run(&mut ways, &mut rests, &mut watch) {
                 Attempt::Done(carries) => {
+                    is_attained = true;
                     let written = write(domain, &mut ways, &carries, &ends);
                     let is_enough = |margin: Bracket| required.is_none_or(|required| margin.lower >= required);
-                    plan = Some(written).filter(|plan| plan.margin.is_none_or(is_enough));
-                    break 'levels;
+                    if written.margin.is_none_or(is_enough) && is_better(&written, plan.as_ref()) {
+                        plan = Some(written);
+                    }
                 }
-                Attempt::Stopped => break 'levels,
-                Attempt::Stuck => {}
+                Attempt::Stopped | Attempt::Stuck => {}
+            }
+            if is_attained || stopped.is_some() {
+                break;
             }
         }
+        eprintln!(plan.as_ref().map(|p| p.moves), statistics.expanded, rests.solves());
+        levels.note(is_attained);
+        if stopped.is_some() {
+            break;
+        }
     }
-    let moves_at_least = shape::surplus(problem.start_layout(), &targets).len();
-    let moves_at_least = if problem.goal().is_free() { 0 } else { u32::try_from(moves_at_least).unwrap_or(u32::MAX) };
     statistics.oracle_solves = rests.solves();
     Report {
         outcome: Outcome::OutOfBudget(stopped.unwrap_or(Limit::Incomplete)),
@@ -114,7 +125,17 @@ pub fn decompose(
         plan,
         alternatives: Vec::new(),
         alternatives_cut_by: None,
-        proof: Proof { optimal: false, margin_at_most: ends.at_most(), moves_at_least },
+        proof: Proof {
+            optimal: false,
+            margin_at_most: ends.at_most(),
+            moves_at_least: u32::try_from(fewest).unwrap_or(u32::MAX),
+        },
         statistics,
     }
+}
+
+/// Whether a plan has a larger margin than the best so far, or none and fewer moves.
+fn is_better(plan: &Plan, best: Option<&Plan>) -> bool {
+    let margin = |plan: &Plan| plan.margin.map_or(f64::NEG_INFINITY, |margin| margin.lower);
+    best.is_none_or(|best| margin(plan) > margin(best) || margin(plan) == margin(best) && plan.moves < best.moves)
 }

@@ -83,7 +83,8 @@ impl<'a> Ways<'a> {
     fn find(&self, (step, class, around): &Key) -> Option<Way> {
         let step = *step;
         let start = self.domain.problem.start();
-        let of = |module_type| Module { id: String::new(), module_type, placement: Placement::new([0; 3]), fixed: false };
+        let of =
+            |module_type| Module { id: String::new(), module_type, placement: Placement::new([0; 3]), fixed: false };
         let own = self.domain.problem.class(*class);
         let modules = std::iter::once(own.module_type).chain(around.iter().map(|(_, module_type)| *module_type));
         let few = Configuration {

@@ -78,8 +78,7 @@ pub(in crate::reconfigure) fn check<A, C: Copy + PartialEq, T>(
         let allowed = if found.exact { same_state(claimed.lower) } else { tolerance(claimed.lower) };
         let there = planned.phase.map(|phase| margin_of(found.at(phase)));
         let at_phase = |there: Bracket| is_bound(&claimed) || agree(claimed, there, same_state(claimed.lower));
-        let holds = confirms(found.margin, claimed, allowed)
-            && there.is_none_or(|there| there.is_some_and(at_phase));
+        let holds = confirms(found.margin, claimed, allowed) && there.is_none_or(|there| there.is_some_and(at_phase));
         if !holds {
             let fault = Fault::MarginDiffers { claimed, found: there.flatten().unwrap_or(found.margin) };
             checker.fail(Some(index), None, fault, None);

@@ -26,7 +26,12 @@ pub(super) struct Checker<'a> {
 impl<'a> Checker<'a> {
     pub fn new(start: &'a Configuration, assembler: &'a Assembler<'a>, required: f64) -> Self {
         let surroundings = Surroundings::new(&start.environment);
-        Self { assembler, surroundings, bounds: Bounds::new(start), judge: Judge::new(required, start.require.connected) }
+        Self {
+            assembler,
+            surroundings,
+            bounds: Bounds::new(start),
+            judge: Judge::new(required, start.require.connected),
+        }
     }
 
     /// Checks a state at rest: whether it has a margin, by bounds with one of two modules hanging on the others, where
