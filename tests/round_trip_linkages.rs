@@ -74,6 +74,7 @@ prop_compose! {
         Catalogue {
             name,
             connectors: vec![Connector { name: "magnet".into(), strength: 100.0, model }],
+            motions: Vec::new(),
             module_types: vec![module_type("node", vec![ball], Vec::new(), vec![surface]), elbow],
         }
     }
@@ -135,7 +136,7 @@ prop_compose! {
         let mut linkage = Linkage {
             catalogue, gravity, environment: Environment { module_friction: friction, ..Environment::default() },
             modules: vec![first], connections: Vec::new(), loads: Vec::new(),
-            require: Requirement { margin, connected },
+            require: Requirement { margin, connected, ..Requirement::default() },
         };
         let mut codes = Vec::new();
         for growth in growths {

@@ -28,7 +28,12 @@ fn block(shape: Shape, pose: Pose, obstacle: Obstacle) -> Linkage {
         lattice: None,
     };
     Linkage {
-        catalogue: Arc::new(Catalogue { name: "test".into(), connectors: Vec::new(), module_types: vec![module_type] }),
+        catalogue: Arc::new(Catalogue {
+            name: "test".into(),
+            connectors: Vec::new(),
+            motions: Vec::new(),
+            module_types: vec![module_type],
+        }),
         gravity: Vec3::new(0.0, 0.0, -9.81),
         environment: Environment { obstacles: vec![obstacle], ..Environment::default() },
         modules: vec![Module { id: "a".into(), module_type: 0, pose, joints: Vec::new(), fixed: false }],

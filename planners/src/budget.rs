@@ -14,8 +14,11 @@ pub struct Budget {
     pub deadline: Option<Instant>,
     /// Most expansions; expanding a state again counts again.
     pub max_expansions: Option<u64>,
-    /// Most memory, in approximate bytes (see [`Statistics::bytes`]).
+    /// Most memory in bytes (see [`Statistics::bytes`]). A search ends when seven eighths of it are used: the last
+    /// one is for what a single expansion may add, tables that grow included.
     pub max_bytes: Option<usize>,
+    /// Measures the memory in use, in bytes, where the caller knows better than to believe approximate counts.
+    pub measure_bytes: Option<fn() -> Option<usize>>,
     /// Becomes true when the search should stop, from any thread.
     pub cancel: Option<Arc<AtomicBool>>,
 }
@@ -48,8 +51,8 @@ pub struct Statistics {
     pub certified: u64,
     /// Distinct states met.
     pub states: usize,
-    /// Peak memory of states, transitions, labels and queues, in approximate
-    /// bytes: allocator overhead and the heap that actions own are not counted.
+    /// Peak memory in bytes: as [measured](Budget::measure_bytes), or else approximately that of states, transitions,
+    /// labels, queues and what the space [remembers](crate::Space::memory_bytes), without allocator overhead and the heap that actions own.
     pub bytes: usize,
 }
 
@@ -60,7 +63,7 @@ impl Budget {
             Some(Limit::Cancelled)
         } else if self.max_expansions.is_some_and(|most| spent.expanded >= most) {
             Some(Limit::Expansions)
-        } else if self.max_bytes.is_some_and(|most| spent.bytes > most) {
+        } else if self.max_bytes.is_some_and(|most| spent.bytes > most - most / 8) {
             Some(Limit::Memory)
         } else if self.deadline.is_some_and(|deadline| Instant::now() >= deadline) {
             Some(Limit::Deadline)

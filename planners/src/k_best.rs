@@ -1,6 +1,6 @@
 //! The cheapest simple paths of a required width, one after the other.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::hash::Hash;
 
 use crate::algebra::Additive;
@@ -9,23 +9,26 @@ use crate::graph::{Arrow, START};
 use crate::outcome::{Outcome, Proof};
 use crate::progress::Pass;
 use crate::queue::Queue;
+use crate::registry::StateId;
 use crate::search::{PathOf, Search};
 use crate::shortest::Task;
 use crate::space::Space;
 
-/// The cheapest path of a cell: of the simple paths that begin with the first
-/// `fixed` transitions of `way` and do not go on with one of `forbidden`.
-struct Candidate {
+/// Where paths part from those that were looked at: after `way`, or the same in another order.
+struct Root {
     way: Vec<Arrow>,
-    fixed: usize,
-    forbidden: Vec<Arrow>,
+    /// How those that were looked at go on.
+    known: Vec<Arrow>,
 }
 
-/// Cells that are still to be searched through.
-struct Cells {
+/// What is still to be searched through.
+struct Roots<K> {
     floor: f64,
-    open: Queue<Additive, Candidate>,
-    /// Memory of the candidates' transitions.
+    /// By what they have in common with other orders, and the state that they lead to; never iterated over.
+    roots: HashMap<(StateId, K), Root>,
+    /// The cheapest paths that go on from the roots in another way.
+    open: Queue<Additive, Vec<Arrow>>,
+    /// Memory of all transitions.
     bytes: usize,
     /// Least cost at which an interval too wide to decide may hide a path.
     undecided: u32,
@@ -35,27 +38,27 @@ impl<S: Space> Search<'_, S> {
     /// The `k` cheapest simple paths from the start to a goal whose width is at
     /// least `floor`, cheapest first, ties in order of generation; `k` counts
     /// as at least 1. Of paths whose actions have the same `same_plan` key only
-    /// the first is kept: the sorted actions as key drop plans that differ only
-    /// in order. A path visits no state twice and ends at its first goal.
+    /// the first is kept. Keys that are equal for two ways to one state have to be equal for whatever follows on both: the
+    /// actions up to the order of independent ones have such a key. A path visits no state twice and ends at its first goal.
     ///
     /// After [`Search::margin`], the `floor` of its proof gives the alternatives
     /// to its path.
     ///
     /// Method: J. Y. Yen, "Finding the k shortest loopless paths in a network",
-    /// Management Science 17(11), 1971, in E. L. Lawler's form (Management
-    /// Science 18(7), 1972), which splits the paths left into cells that do not
-    /// overlap. Each cell is searched by the lazy A* of [`Search::shortest`].
-    /// Paths that `same_plan` drops are gone through one by one, and `n`
-    /// independent actions have `n!` orders: give a budget.
+    /// Management Science 17(11), 1971. Every path that is looked at splits those that are left by the place where they part
+    /// from it; the cheapest of each part is found by the lazy A* of [`Search::shortest`]. Here a place is a
+    /// state *with the key* of the way to it: `n` independent actions have `n!` orders, but only
+    /// `2^n` places (two runs of `n` moves 4^n / sqrt(n) and n^2), and other orders are gone through no further
+    /// than the first place at which everything has been looked at.
     ///
     /// # Guarantees
     ///
     /// - `Solved`: every path found is certified, and no path with a key that is
-    ///   not among those found costs less than the last. Fewer than `k` are
+    ///   not among those found costs less than the last, unless another order of it visits a state twice. Fewer than `k` are
     ///   all that there are; then `cost_at_least` is `u32::MAX`.
     /// - `Impossible`: as for [`Search::shortest`].
     /// - `OutOfBudget`: those found come in order; no path with another key
-    ///   whose true width is at least `floor` costs less than `cost_at_least`.
+    ///   whose true width is at least `floor` costs less than `cost_at_least`, with the same exception.
     pub fn k_best<K: Eq + Hash>(
         &mut self,
         k: usize,
@@ -64,69 +67,79 @@ impl<S: Space> Search<'_, S> {
     ) -> Outcome<Vec<PathOf<S>>> {
         self.begin();
         self.monitor.progress.pass = Pass::KBest;
-        let mut cells = Cells { floor, open: Queue::new(), bytes: 0, undecided: u32::MAX };
+        let mut roots = Roots { floor, roots: HashMap::new(), open: Queue::new(), bytes: 0, undecided: u32::MAX };
         let (mut found, mut keys) = (Vec::new(), HashSet::new());
 
-        if let Err((limit, cost_at_least)) = self.search_cell(&mut cells, &[], Vec::new()) {
-            return self.conclude_list(found, Some(limit), floor, cost_at_least.min(cells.undecided));
+        if let Err((limit, cost_at_least)) = self.go_on(&mut roots, &[], &[]) {
+            return self.conclude_list(found, Some(limit), floor, cost_at_least.min(roots.undecided));
         }
-        while let Some(head) = cells.open.pop() {
-            let (Additive(cost), candidate) = (head.priority, head.item);
-            cells.bytes -= candidate.bytes();
-            self.monitor.progress.cost_at_least = cost.min(cells.undecided);
-            let path = self.path(&candidate.way);
+        while let Some(head) = roots.open.pop() {
+            let (Additive(cost), way) = (head.priority, head.item);
+            roots.bytes -= size_of_val(&*way);
+            self.monitor.progress.cost_at_least = cost.min(roots.undecided);
+            let path = self.path(&way);
             let actions: Vec<S::Action> = path.steps.iter().map(|step| step.action.clone()).collect();
             if keys.insert(same_plan(&actions)) {
                 self.monitor.progress.best_cost.get_or_insert(cost);
                 found.push(path);
                 if found.len() >= k {
-                    let limit = (cells.undecided < cost).then_some(Limit::Precision);
-                    return self.conclude_list(found, limit, floor, cost.min(cells.undecided));
+                    let limit = (roots.undecided < cost).then_some(Limit::Precision);
+                    return self.conclude_list(found, limit, floor, cost.min(roots.undecided));
                 }
             }
-            if let Err(limit) = self.split(&mut cells, candidate) {
-                return self.conclude_list(found, Some(limit), floor, cost.min(cells.undecided));
+            if let Err(limit) = self.split(&mut roots, &way, &actions, &same_plan) {
+                return self.conclude_list(found, Some(limit), floor, cost.min(roots.undecided));
             }
         }
-        let limit = (cells.undecided < u32::MAX).then_some(Limit::Precision);
-        self.conclude_list(found, limit, floor, cells.undecided)
+        let limit = (roots.undecided < u32::MAX).then_some(Limit::Precision);
+        self.conclude_list(found, limit, floor, roots.undecided)
     }
 
-    /// Splits what is left of a cell without its cheapest path into cells by
-    /// the place where a path leaves that one.
-    fn split(&mut self, cells: &mut Cells, candidate: Candidate) -> Result<(), Limit> {
-        let Candidate { way, fixed, mut forbidden } = candidate;
-        for at in fixed..way.len() {
-            forbidden.push(way[at]);
-            self.search_cell(cells, &way[..at], std::mem::take(&mut forbidden)).map_err(|(limit, _)| limit)?;
+    /// Looks for the cheapest paths that part from this one, from each of its places where it goes on in a new way.
+    fn split<K: Eq + Hash>(
+        &mut self,
+        roots: &mut Roots<K>,
+        way: &[Arrow],
+        actions: &[S::Action],
+        same_plan: &impl Fn(&[S::Action]) -> K,
+    ) -> Result<(), Limit> {
+        for (at, &next) in way.iter().enumerate() {
+            let root = roots.roots.entry((next.from, same_plan(&actions[..at])));
+            let root = root.or_insert_with(|| Root { way: way[..at].to_vec(), known: Vec::new() });
+            if root.known.contains(&next) {
+                continue;
+            }
+            root.known.push(next);
+            let (way, known) = (root.way.clone(), root.known.clone());
+            roots.bytes += if known.len() == 1 { size_of_val(&*way) + size_of::<Root>() } else { size_of::<Arrow>() };
+            self.go_on(roots, &way, &known).map_err(|(limit, _)| limit)?;
         }
         Ok(())
     }
 
-    /// Finds the cheapest path of a cell, if it has one. Out of budget it says
-    /// what no path of the cell can cost less than.
-    fn search_cell(&mut self, cells: &mut Cells, prefix: &[Arrow], forbidden: Vec<Arrow>) -> Result<(), (Limit, u32)> {
+    /// Finds the cheapest path that begins with `prefix` and does not go on with one of `known`, if there is
+    /// one. Out of budget it says what no such path can cost less than.
+    fn go_on<K>(&mut self, roots: &mut Roots<K>, prefix: &[Arrow], known: &[Arrow]) -> Result<(), (Limit, u32)> {
         let mut visited = vec![START];
         visited.extend(prefix.iter().map(|&arrow| self.graph.edge(arrow).to));
         let task = Task {
             from: visited.pop().expect("the start at least"),
             spent: self.cost(prefix),
-            floor: cells.floor,
-            below: u32::MAX,
             avoid: &visited,
-            forbid: &forbidden,
-            held_bytes: cells.bytes + cells.open.bytes(),
+            forbid: known,
+            held_bytes: roots.bytes + roots.open.bytes(),
+            ..Task::whole(roots.floor, u32::MAX)
         };
         let run = self.run_shortest(&task);
         match run.limit {
-            Some(Limit::Precision) => cells.undecided = cells.undecided.min(run.cost_at_least),
+            Some(Limit::Precision) => roots.undecided = roots.undecided.min(run.cost_at_least),
             Some(limit) => return Err((limit, run.cost_at_least)),
             None => {}
         }
         if let Some(rest) = run.best {
-            let candidate = Candidate { way: [prefix, &rest].concat(), fixed: prefix.len(), forbidden };
-            cells.bytes += candidate.bytes();
-            cells.open.push(Additive(self.cost(&candidate.way)), candidate);
+            let way = [prefix, &rest].concat();
+            roots.bytes += size_of_val(&*way);
+            roots.open.push(Additive(self.cost(&way)), way);
         }
         Ok(())
     }
@@ -158,11 +171,5 @@ impl<S: Space> Search<'_, S> {
             None if found.is_empty() => Outcome::Impossible,
             None => Outcome::Solved { found, proof },
         }
-    }
-}
-
-impl Candidate {
-    fn bytes(&self) -> usize {
-        (self.way.len() + self.forbidden.len()) * size_of::<Arrow>()
     }
 }

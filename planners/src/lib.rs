@@ -11,9 +11,12 @@
 //! | --- | --- | --- |
 //! | [`Search::widest`] | largest width | lazy best-first with the max-min algebra |
 //! | [`Search::shortest`] | least cost with width at least a floor | lazy A*, re-opening |
-//! | [`Search::from_both_ends`] | the same, where goals are known | lazy bidirectional Dijkstra |
+//! | [`Search::from_both_ends`] | the same, where goals are known | lazy bidirectional A* |
 //! | [`Search::margin`] | largest width, then least cost | both, one after the other |
-//! | [`Search::k_best`] | the K cheapest with width at least a floor | Yen with Lawler's cells |
+//! | [`Search::anytime_margin`] | the same, with better and better paths before | greedy, then the cheapest for ever higher floors |
+//! | [`Search::k_best`] | the K cheapest with width at least a floor | Yen, with places up to the order of independent actions |
+//! | [`Search::ranked`] | the K widest, then cheapest | the same, in layers of width |
+//! | [`Search::pareto`] | the front of width against cost | shortest, again and again with a rising floor |
 //!
 //! An [`Outcome`] says which of three things happened: solved and proved,
 //! proved impossible, or neither, with the best path and the bounds so far.
@@ -39,6 +42,7 @@
 pub mod algebra;
 pub mod toy;
 
+mod anytime;
 mod both_ends;
 mod brackets;
 mod budget;
@@ -46,8 +50,10 @@ mod graph;
 mod k_best;
 mod margin;
 mod outcome;
+mod pareto;
 mod progress;
 mod queue;
+mod ranked;
 mod registry;
 mod search;
 mod shortest;
@@ -55,6 +61,7 @@ mod space;
 mod tree;
 mod widest;
 
+pub use anytime::Shortest;
 pub use budget::{Budget, Limit, Statistics};
 pub use outcome::{Outcome, Path, Proof, Step};
 pub use progress::{Pass, Progress};

@@ -5,6 +5,8 @@ use crate::budget::{Budget, Limit, Statistics};
 /// What a search is doing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Pass {
+    /// Looking for some path that is wide enough, soon.
+    Greedy,
     /// Looking for the widest path.
     Widest,
     /// Looking for the cheapest path that is wide enough.
@@ -70,6 +72,11 @@ impl<'a> Monitor<'a> {
             self.report();
         }
         self.budget.exceeded(&self.progress.statistics)
+    }
+
+    /// The memory in use, where the caller measures it.
+    pub fn measured(&self) -> Option<usize> {
+        self.budget.measure_bytes.and_then(|measure| measure())
     }
 
     pub fn report(&mut self) {

@@ -1,4 +1,4 @@
-//! About which axis, and how far, a module turns in a pivot. The planner counts
+//! About which axis, and how far, a module turns about an edge. The planner counts
 //! in cells; files say this too, for those who drive motors.
 
 use std::fmt;
@@ -50,14 +50,13 @@ impl Cells {
     }
 
     /// Carries out an action, however odd, and says which turn it makes; `None` for
-    /// all but pivots, and for a pivot that no turn makes.
+    /// all but turns, and for one that no turn makes.
     pub(super) fn take(&mut self, action: &Action) -> Option<AxisAngle> {
         let at = |module: usize| self.0.get(module).copied();
         let (module, to, turn) = match *action {
             Action::Attach(_) | Action::Detach(_) => return None,
-            Action::Slide { module, to } => (module, to, None),
-            Action::Pivot { module, support, to } => {
-                let cells = at(module).zip(at(support));
+            Action::Move { module, support, to, .. } => {
+                let cells = at(module).zip(support.and_then(at));
                 (module, to, cells.and_then(|(from, support)| AxisAngle::between(from, support, to)))
             }
         };

@@ -12,21 +12,15 @@ pub enum Action {
     Attach(FaceConnection),
     /// Release an engaged connection.
     Detach(FaceConnection),
-    /// Move a module by one cell over the faces of two coplanar neighbours.
-    Slide {
+    /// Move a module to another cell.
+    Move {
+        /// Which motion it makes: an index into [`Catalogue::motions`](crate::robot::Catalogue::motions).
+        motion: u16,
         /// The module.
         module: usize,
-        /// The cell that it arrives in, next to its own.
-        to: Cell,
-    },
-    /// Turn a module about an edge that it shares with a neighbour: by 90
-    /// degrees into a cell next to its own, or by 180 degrees into the cell
-    /// diagonally across the neighbour's edge.
-    Pivot {
-        /// The module.
-        module: usize,
-        /// The neighbour that carries it.
-        support: usize,
+        /// The neighbour that carries it, where it turns about an edge: by 90 degrees into a cell next to its own,
+        /// or by 180 degrees into the cell diagonally across the neighbour's edge. `None` where it moves straight on.
+        support: Option<usize>,
         /// The cell that it arrives in.
         to: Cell,
     },
@@ -35,24 +29,23 @@ pub enum Action {
 impl Action {
     /// Whether it moves a module.
     pub const fn is_move(&self) -> bool {
-        matches!(self, Self::Slide { .. } | Self::Pivot { .. })
+        matches!(self, Self::Move { .. })
     }
 
     /// The module that it moves.
     pub const fn moved(&self) -> Option<usize> {
         match self {
-            Self::Slide { module, .. } | Self::Pivot { module, .. } => Some(*module),
+            Self::Move { module, .. } => Some(*module),
             Self::Attach(_) | Self::Detach(_) => None,
         }
     }
 
-    /// Its kind as plans write it.
+    /// Its kind as plans write it; of a move `move`, whatever its motion is called.
     pub const fn kind(&self) -> &'static str {
         match self {
             Self::Attach(_) => "attach",
             Self::Detach(_) => "detach",
-            Self::Slide { .. } => "slide",
-            Self::Pivot { .. } => "pivot",
+            Self::Move { .. } => "move",
         }
     }
 }

@@ -6,12 +6,12 @@
 use nalgebra::{Translation3, Unit};
 
 use crate::geometry;
-use crate::robot::{Face, Occupancy, Placement};
+use crate::robot::{Face, Motion, Occupancy, Placement, axis_of_turn};
 use crate::spatial::{Pose, Vec3};
 
 use super::assembly::{Engagement, Moving, Transient};
 use super::layout::{Bond, neighbour};
-use super::moves::{Motion, Move, pivot_axis};
+use super::moves::Move;
 
 /// A move of one module of a robot.
 #[derive(Clone, Debug)]
@@ -28,21 +28,21 @@ impl Course {
     /// `bonds` are the connections engaged before it; those of the module itself are
     /// replaced by what holds it on its way. `None` when the cell is empty.
     ///
-    /// Sliding, the module is held by every face that it overlaps, as far as it
-    /// overlaps; pivoting, by the hinge alone.
+    /// In a translation the module is held by every face that it overlaps, as far as it
+    /// overlaps; in a rotation by the hinge alone.
     pub fn new(placements: Vec<Placement>, bonds: &[Bond], step: Move, pitch: f64) -> Option<Self> {
         let occupancy = Occupancy::of_placements(&placements);
         let module = occupancy.at(step.from)?;
         let others = bonds.iter().filter(|bond| !bond.touches(step.from));
         let mut engaged: Vec<_> = others.filter_map(|&bond| engagement(&occupancy, bond)).collect();
         match step.motion {
-            Motion::Slide { .. } => engaged.extend(
+            Motion::Translation { .. } => engaged.extend(
                 step.sides().into_iter().filter_map(|(cell, side)| Some(face([module, occupancy.at(cell)?], side))),
             ),
-            Motion::Pivot { support, towards, .. } => {
+            Motion::Rotation { support, towards, .. } => {
                 let parent = occupancy.at(neighbour(step.from, support))?;
                 let edge = edge_centre(step, support, towards, pitch);
-                let frame = Pose::from_parts(Translation3::from(edge), pivot_axis(support, towards).outward_frame());
+                let frame = Pose::from_parts(Translation3::from(edge), axis_of_turn(support, towards).outward_frame());
                 engaged.push(Engagement::Hinge { parent, child: module, frame });
             }
         }
@@ -60,10 +60,10 @@ impl Course {
 /// The motion of the moving module in W.
 pub fn motion(step: Move, pitch: f64) -> geometry::Motion {
     match step.motion {
-        Motion::Slide { direction } => geometry::Motion::Translation { by: direction.normal() * pitch },
-        Motion::Pivot { support, towards, turn } => geometry::Motion::Rotation {
+        Motion::Translation { by } => geometry::Motion::Translation { by: Vec3::from(by.map(f64::from)) * pitch },
+        Motion::Rotation { support, towards, turn } => geometry::Motion::Rotation {
             centre: edge_centre(step, support, towards, pitch),
-            axis: Unit::new_unchecked(pivot_axis(support, towards).normal()),
+            axis: Unit::new_unchecked(axis_of_turn(support, towards).normal()),
             angle: turn.degrees().to_radians(),
         },
     }
@@ -85,7 +85,7 @@ fn face(modules: [usize; 2], towards: Face) -> Engagement {
     }
 }
 
-/// Centre of the edge that a module pivots about, in W, in m.
+/// Centre of the edge that a module turns about, in W, in m.
 fn edge_centre(step: Move, support: Face, towards: Face, pitch: f64) -> Vec3 {
     Placement::new(step.from).centre(pitch) + (support.normal() + towards.normal()) * (pitch / 2.0)
 }

@@ -4,16 +4,18 @@
 use planners::Width;
 
 use crate::geometry::{Solid, Surroundings, TOUCH};
-use crate::robot::{Cell, Placement, Shape};
+use crate::robot::{Cell, Motion, Placement, Shape};
 use crate::spatial::{Pose, Rotation, Vec3};
 use crate::statics::Bracket;
 
 use super::course::motion;
 use super::layout::{Bond, Layout, Placed};
 use super::local::{Memo, Neighbourhood, plane};
-use super::moves::{Motion, Move, fitting, fitting_of};
+use super::moves::Move;
 use super::oracle::{Oracle, Worst};
 use super::problem::Problem;
+use super::recollection::Recollection;
+use super::ways::{fitting, fitting_of};
 
 /// A problem with everything that answers questions about its states.
 pub struct Domain<'a> {
@@ -24,12 +26,19 @@ pub struct Domain<'a> {
     /// Whether states must be stable at all.
     pub stability: bool,
     surroundings: Surroundings,
+    off_limits: Surroundings,
+    /// Cells of modules that may not move; no other module ever comes there.
+    stay: Vec<Cell>,
     pitch: f64,
-    /// Whether a module of this type does not hit ground or obstacles.
+    /// Whether a module of this type hits neither ground nor obstacles, and passes no forbidden region.
     clear: Memo<(Move, usize), bool>,
     /// Margins at rest.
     at_rest: Memo<(Layout, Vec<Bond>), Worst>,
-    /// Bounds on the margins of pivots.
+    /// Bounds on margins at rest.
+    pub(super) bounds: Memo<(Layout, Vec<Bond>), Worst>,
+    /// What states at rest left for their neighbours.
+    pub(super) recollection: Recollection,
+    /// Bounds on the margins of rotations.
     at_most: Memo<Neighbourhood, f64>,
 }
 
@@ -42,20 +51,34 @@ impl<'a> Domain<'a> {
             oracle: Oracle::new(start),
             stability,
             surroundings: Surroundings::new(&start.environment),
+            off_limits: Surroundings::new(&start.require.off_limits()),
+            stay: start.require.stay.iter().map(|&module| start.modules[module].placement.cell).collect(),
             pitch: start.pitch(),
             clear: Memo::new(),
             at_rest: Memo::new(),
+            bounds: Memo::new(),
+            recollection: Recollection::default(),
             at_most: Memo::new(),
         }
     }
 
-    /// The moves that fit among the modules and hit neither ground nor
-    /// obstacles, in a fixed order, whatever is engaged.
+    /// Approximate memory of all answers that are kept, in bytes.
+    pub fn memory_bytes(&self) -> usize {
+        let modules = self.problem.start().modules.len();
+        // Every module of a lattice has about two connections of its own, and a pivot a handful of neighbours.
+        let at_rest = modules * (size_of::<Placed>() + 2 * size_of::<Bond>());
+        let at_most = 8 * size_of::<(Cell, usize)>();
+        let at_rest = self.at_rest.bytes(at_rest) + self.bounds.bytes(at_rest);
+        self.clear.bytes(0) + at_rest + self.at_most.bytes(at_most) + self.recollection.bytes()
+    }
+
+    /// The moves that fit among the modules, hit neither ground nor obstacles and are
+    /// not forbidden, in a fixed order, whatever is engaged.
     pub fn moves(&self, layout: &Layout) -> Vec<Move> {
         let mut moves = fitting(layout, |class| self.problem.ability(class));
         moves.retain(|&step| {
             let class = layout.placed()[layout.at(step.from).expect("a fitting move has a module")].class;
-            self.is_clear(class, step)
+            self.is_open(class, step)
         });
         moves
     }
@@ -64,8 +87,13 @@ impl<'a> Domain<'a> {
     /// hit neither ground nor obstacles.
     pub fn moves_of(&self, layout: &Layout, placed: &Placed) -> Vec<Move> {
         let mut moves = fitting_of(layout, placed, |class| self.problem.ability(class));
-        moves.retain(|&step| self.is_clear(placed.class, step));
+        moves.retain(|&step| self.is_open(placed.class, step));
         moves
+    }
+
+    /// Whether a module of some class may take a move, and hits neither ground nor obstacles.
+    fn is_open(&self, class: u16, step: Move) -> bool {
+        !self.stay.contains(&step.from) && self.is_clear(class, step)
     }
 
     fn is_clear(&self, class: u16, step: Move) -> bool {
@@ -74,7 +102,8 @@ impl<'a> Domain<'a> {
             let shape = self.problem.start().catalogue.module_types[module_type].body().shape.clone();
             // A cube sweeps the same room in every orientation.
             let solid = Solid::new(shape, Placement::new(step.from).pose(self.pitch));
-            self.surroundings.first_collision(&solid, &motion(step, self.pitch)).is_none()
+            let motion = motion(step, self.pitch);
+            [&self.surroundings, &self.off_limits].iter().all(|part| part.first_collision(&solid, &motion).is_none())
         })
     }
 
@@ -89,17 +118,22 @@ impl<'a> Domain<'a> {
         !self.problem.must_stay_connected() || layout.is_connected_by(bonds.iter().map(|bond| bond.cells()))
     }
 
+    /// Whether a fitting move can begin with these connections engaged.
+    pub fn allows(&self, layout: &Layout, bonds: &[Bond], step: Move) -> bool {
+        let class = layout.placed()[layout.at(step.from).expect("a fitting move has a module")].class;
+        self.problem.ability(class).allows(layout, bonds, step)
+    }
+
     /// Whether the robot stays connected during a move and after it, if it has to.
     ///
-    /// In the interior of a slide more holds than at either end, so the two
-    /// ends decide. A pivot hangs on its hinge until it rests on its landing face.
+    /// Between two stations of a translation more holds than at either, so its stations
+    /// decide. In a rotation the module hangs on its hinge until it rests on its landing face.
     pub fn stays_connected(&self, layout: &Layout, bonds: &[Bond], step: Move) -> bool {
         // The moving module goes by the cell that it leaves.
         let others = || bonds.iter().filter(|bond| !bond.touches(step.from)).map(|bond| bond.cells());
-        let holds = [step.departure(layout), step.landing(layout)];
         !self.problem.must_stay_connected()
-            || holds.iter().all(|holds| {
-                let own = holds.iter().map(|bond| bond.cells().map(|c| if c == step.to() { step.from } else { c }));
+            || step.holders(layout).into_iter().all(|holders| {
+                let own = holders.into_iter().map(|holder| [step.from, holder]);
                 layout.is_connected_by(others().chain(own))
             })
     }
@@ -111,8 +145,8 @@ impl<'a> Domain<'a> {
     }
 
     /// Upper bound on the margin of a move, whatever is engaged, from the
-    /// moving module and its neighbours alone: infinite for slides, which many
-    /// faces hold, and for pivots along ground or obstacles.
+    /// moving module and its neighbours alone: infinite for translations, which many
+    /// faces hold, and for rotations along ground or obstacles.
     pub fn at_most(&self, layout: &Layout, step: Move) -> f64 {
         if !self.stability || self.is_along_environment(step) {
             return f64::INFINITY;
@@ -121,7 +155,7 @@ impl<'a> Domain<'a> {
         self.at_most.get(pivot, |_| self.oracle.at_most(self.problem.placements(layout), step))
     }
 
-    /// Whether the module of a pivot may touch ground or an obstacle strictly between its
+    /// Whether the module of a rotation may touch ground or an obstacle strictly between its
     /// ends: one that reaches into the smallest box around all it sweeps, or
     /// touches that box across the axis. Its other sides the module reaches at the ends only.
     fn is_along_environment(&self, step: Move) -> bool {
@@ -146,9 +180,9 @@ impl<'a> Domain<'a> {
     pub fn of_move(&self, layout: &Layout, bonds: &[Bond], step: Move, floor: f64) -> Worst {
         let course = || self.oracle.of_move(self.problem.placements(layout), bonds, step, floor);
         match step.motion {
-            // The state at rest after a slide is the one at its last phase.
-            Motion::Slide { .. } => course(),
-            Motion::Pivot { .. } => {
+            // The state at rest after a translation is the one at its last phase.
+            Motion::Translation { .. } => course(),
+            Motion::Rotation { .. } => {
                 let settled = self.of_state(&self.after(layout, step), &bonds_after(layout, bonds, step));
                 if settled.is_out(floor) {
                     return settled.cut_short();

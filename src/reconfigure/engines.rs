@@ -3,11 +3,13 @@
 //!
 //! Knows objectives, budgets and proofs; does not know what a state or an action is.
 
+use std::cell::RefCell;
 use std::hash::Hash;
 use std::time::Instant;
 
-use planners::{Budget, Limit, PathOf, Progress, Search, Space};
+use planners::{Budget, PathOf, Progress, Search, Shortest, Space};
 
+use super::herald::Herald;
 use super::options::{Event, Options};
 use super::plan::{Objective, Outcome, Plan, Proof, Report, Statistics};
 use super::refusal::Impossible;
@@ -19,9 +21,9 @@ pub const MARGIN_TOLERANCE: f64 = 1e-6;
 /// How paths of a space become plans of a robot.
 pub trait Translation<S: Space> {
     /// What the plans do.
-    type Action;
+    type Action: Clone;
     /// What names a connection of the robot.
-    type Connection;
+    type Connection: Clone;
     /// What plans that differ in no more than the order of independent moves have in common.
     type Key: Hash + Eq;
 
@@ -31,6 +33,9 @@ pub trait Translation<S: Space> {
     /// The plan that follows a path from the start, by its actions.
     fn plan(&self, path: &[S::Action]) -> Plan<Self::Action, Self::Connection>;
 }
+
+/// What a translation's searches tell.
+pub type EventOf<T, S> = Event<<T as Translation<S>>::Action, <T as Translation<S>>::Connection>;
 
 /// The plans that a translation makes.
 pub type ReportOf<T, S> = Report<<T as Translation<S>>::Action, <T as Translation<S>>::Connection>;
@@ -53,9 +58,9 @@ impl Task<'_> {
         &self,
         space: &S,
         translation: &T,
-        on_event: &mut dyn FnMut(&Event),
+        on_event: &mut dyn FnMut(&EventOf<T, S>),
     ) -> ReportOf<T, S> {
-        self.run_with(space, translation, |search, floor| search.shortest(floor), on_event)
+        self.run_with(space, translation, &|search, floor| search.shortest(floor), on_event)
     }
 
     /// Searches a space whose shortest paths are found by `shortest`, given the least width.
@@ -63,16 +68,22 @@ impl Task<'_> {
         &self,
         space: &S,
         translation: &T,
-        shortest: impl Fn(&mut Search<'_, S>, f64) -> planners::Outcome<PathOf<S>>,
-        on_event: &mut dyn FnMut(&Event),
+        shortest: Shortest<'_, S>,
+        on_event: &mut dyn FnMut(&EventOf<T, S>),
     ) -> ReportOf<T, S> {
         let floor = self.required.unwrap_or(f64::NEG_INFINITY);
-        let mut on_progress =
-            |progress: &Progress| on_event(&Event { progress: *progress, oracle_solves: (self.solves)() });
+        let herald = RefCell::new(Herald::new(on_event));
+        let mut on_progress = |progress: &Progress| herald.borrow_mut().progress(progress, (self.solves)());
+        let mut told = None;
+        let mut on_path = |path: &PathOf<S>| {
+            let plan = translation.plan(&actions::<S>(path));
+            told = Some((path.cost, path.width, plan.clone()));
+            herald.borrow_mut().plan(plan, (self.solves)());
+        };
         let mut search = Search::new(space, self.search_options()).on_progress(&mut on_progress);
         let outcome = match self.options.objective {
-            Objective::Margin => best_margin(&mut search, &shortest, floor),
-            Objective::Moves => shortest(&mut search, floor),
+            Objective::Margin => search.anytime_margin(floor, shortest, &mut on_path),
+            Objective::Moves => search.anytime_shortest(floor, shortest, &mut on_path),
         };
         let mut found: Vec<Vec<S::Action>> = outcome.best().map(actions::<S>).into_iter().collect();
         let mut cut_by = outcome.limit();
@@ -92,8 +103,12 @@ impl Task<'_> {
         let wants_more = self.options.plans > 1 && found.len() < self.options.plans;
         let statistics = search.statistics();
         drop(search);
-        let mut plans = found.iter().map(|path| translation.plan(path));
-        let plan = plans.next();
+        // The best one was told before it was returned.
+        let plan = outcome.best().map(|best| match told {
+            Some((cost, width, plan)) if (cost, width) == (best.cost, best.width) => plan,
+            _ => translation.plan(&actions::<S>(best)),
+        });
+        let plans = found.iter().skip(1).map(|path| translation.plan(path));
         let (ending, proof) = self.conclude(&outcome, plan.is_some());
         Report {
             outcome: ending,
@@ -119,6 +134,7 @@ impl Task<'_> {
             deadline: self.options.time_limit.and_then(|limit| self.began.checked_add(limit)),
             max_expansions: self.options.max_expansions,
             max_bytes: self.options.max_bytes,
+            measure_bytes: self.options.measure_bytes,
             cancel: self.options.cancel.clone(),
         };
         planners::Options { tolerance: MARGIN_TOLERANCE, budget, ..planners::Options::default() }
@@ -149,41 +165,6 @@ impl Task<'_> {
 /// What a path does.
 fn actions<S: Space>(path: &PathOf<S>) -> Vec<S::Action> {
     path.steps.iter().map(|step| step.action.clone()).collect()
-}
-
-/// The cheapest of the widest paths, with a path in hand early.
-///
-/// A search for the fewest moves is guided by the bound on the moves that are left, one for the
-/// largest margin is not. So a path of fewest moves comes first, and then the
-/// question is only whether a path is wider *by more than the tolerance*, which far
-/// fewer transitions are open to. If none is, the first path is also the
-/// cheapest of the widest: no path that the floor admits is cheaper.
-fn best_margin<S: Space>(
-    search: &mut Search<'_, S>,
-    shortest: impl Fn(&mut Search<'_, S>, f64) -> planners::Outcome<PathOf<S>>,
-    floor: f64,
-) -> planners::Outcome<PathOf<S>> {
-    let cheapest = shortest(search, floor);
-    let planners::Outcome::Solved { found, proof } = cheapest else { return cheapest };
-    let width = found.width.lower;
-    if width >= search.tie(proof.width_at_most) {
-        let proof = planners::Proof { width_optimal: true, ..proof };
-        return planners::Outcome::Solved { found, proof };
-    }
-    let wider = width + MARGIN_TOLERANCE * width.abs().max(1.0);
-    match search.margin(wider) {
-        planners::Outcome::Impossible => {
-            let proof = planners::Proof { width_at_most: wider, width_optimal: true, ..proof };
-            planners::Outcome::Solved { found, proof }
-        }
-        // Brackets straddle the edge of the tolerance: the engine's own passes tell what they allow.
-        planners::Outcome::OutOfBudget { limit: Limit::Precision, .. } => search.margin(floor),
-        planners::Outcome::OutOfBudget { limit, best: None, proof } => {
-            let proof = planners::Proof { width_optimal: false, cost_optimal: false, ..proof };
-            planners::Outcome::OutOfBudget { limit, best: Some(found), proof }
-        }
-        better => better,
-    }
 }
 
 /// Adds the paths that are not among those found by their key.

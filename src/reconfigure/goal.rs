@@ -4,7 +4,7 @@
 
 use crate::robot::{Cell, Configuration, Face, Goal, Module, Orientation};
 
-use super::heuristic::Targets;
+use super::heuristic::{Reach, Targets};
 use super::layout::{Bond, Layout, Placed};
 use super::problem::{Class, bonds};
 use super::refusal::{Impossible, Refusal, Rejection};
@@ -35,11 +35,12 @@ pub struct Arrival {
 }
 
 impl GoalTest {
-    /// Prepares a goal for a start whose modules have these classes.
+    /// Prepares a goal for a start whose modules have these classes, which come so far in one move.
     pub(super) fn new(
         start: &Configuration,
         class_of: &[u16],
         classes: &[Class],
+        reaches: Vec<Reach>,
         goal: &Goal,
     ) -> Result<Self, Rejection> {
         let free = goal.matching.free_frame;
@@ -54,10 +55,9 @@ impl GoalTest {
             orientation: Orientation::IDENTITY,
         });
         let layout = Layout::new(placed.collect());
-        let fixed: Vec<bool> = classes.iter().map(|class| class.fixed).collect();
         let listed = bonds(&goal.configuration);
         let turns = if free { 4 } else { 1 };
-        let forms = (0..turns).map(|turn| Form::new(&layout, &listed, turn, free, &fixed)).collect();
+        let forms = (0..turns).map(|turn| Form::new(&layout, &listed, turn, free, &reaches)).collect();
         Ok(Self { forms, free })
     }
 
@@ -137,7 +137,7 @@ impl GoalTest {
 impl Form {
     /// The goal turned by so many quarters about z; moved to the corner of
     /// the positive quadrant where the frame is free.
-    fn new(layout: &Layout, listed: &[Bond], turn: usize, free: bool, fixed: &[bool]) -> Self {
+    fn new(layout: &Layout, listed: &[Bond], turn: usize, free: bool, reaches: &[Reach]) -> Self {
         let quarters = (0..turn).fold(Orientation::IDENTITY, |o, _| o.turned(Orientation::quarter_turn(Face::PosZ)));
         let rows = quarters.rows();
         let turned =
@@ -151,7 +151,7 @@ impl Form {
             let cell = turned(bond.cells()[0]);
             Bond::new(cell, quarters.to_world(bond.face())).displaced(offset)
         });
-        let targets = Targets::new(&layout, fixed.to_vec());
+        let targets = Targets::new(&layout, reaches.to_vec());
         let mut bonds: Vec<Bond> = bonds.collect();
         bonds.sort_unstable();
         Self { bonds, bounds: bounds(&layout), targets, layout }
@@ -173,6 +173,10 @@ fn check_free_frame(start: &Configuration) -> Result<(), Refusal> {
         "there are obstacles"
     } else if start.modules.iter().any(|module| module.fixed) {
         "some modules are fixed"
+    } else if !start.require.stay.is_empty() {
+        "some modules may not move"
+    } else if !start.require.keep_out.is_empty() {
+        "there are forbidden regions"
     } else if start.gravity.x != 0.0 || start.gravity.y != 0.0 {
         "gravity is not vertical"
     } else {
@@ -228,6 +232,13 @@ fn goal_classes(
             }
             let module_type = start.module_type(index).name.clone();
             return Err(Impossible::ModulesDiffer { module_type, start: present, goal: counts[class] }.into());
+        }
+    }
+    for &stays in &start.require.stay {
+        let cell = start.modules[stays].placement.cell;
+        let mut there = goal.configuration.modules.iter().zip(&wanted).filter(|(m, _)| m.placement.cell == cell);
+        if !there.any(|(_, &class)| class == class_of[stays]) {
+            return Err(Impossible::FixedModule { module: start.modules[stays].id.clone() }.into());
         }
     }
     Ok(wanted)

@@ -1,4 +1,4 @@
-//! What pivots have in common: the same question about a module and what it
+//! What rotations have in common: the same question about a module and what it
 //! touches on its way, in one layout and in many others.
 //!
 //! Knows where answers are the same; does not know what they are.
@@ -7,13 +7,13 @@ use std::collections::HashMap;
 use std::hash::Hash;
 use std::sync::Mutex;
 
-use crate::robot::{Cell, Face, Orientation};
+use crate::robot::{Cell, Face, Motion, Orientation, axis_of_turn};
 
 use super::layout::{Layout, displaced, neighbour};
-use super::moves::{Motion, Move, Turn, pivot_axis};
+use super::moves::Move;
 use super::problem::Problem;
 
-/// A pivot with all that its module touches strictly between its ends, up to a
+/// A rotation with all that its module touches strictly between its ends, up to a
 /// displacement. Valid away from ground and obstacles, whose place it does not know.
 ///
 /// With the hinge at the origin and the axes of [`Move::room`], the module's
@@ -32,7 +32,7 @@ pub struct Neighbourhood {
 }
 
 impl Neighbourhood {
-    /// What the module of a pivot touches in `layout`; `None` for a slide. The
+    /// What the module of a rotation touches in `layout`; `None` for a translation. The
     /// cell that it leaves must be filled.
     pub fn new(problem: &Problem, layout: &Layout, step: Move) -> Option<Self> {
         let (plane, axis) = plane(step)?;
@@ -53,17 +53,17 @@ impl Neighbourhood {
     }
 }
 
-/// The cells in the plane of a pivot that its module sweeps or touches strictly
-/// between its ends, with the axis of its turn; `None` for a slide.
+/// The cells in the plane of a rotation that its module sweeps or touches strictly
+/// between its ends, with the axis of its turn; `None` for a translation.
 pub fn plane(step: Move) -> Option<(Vec<Cell>, Face)> {
-    let Motion::Pivot { support, towards, turn } = step.motion else { return None };
-    let carrier = neighbour(step.from, support);
+    let Motion::Rotation { support, towards, .. } = step.motion else { return None };
     let mut cells = step.room();
-    cells.extend([step.from, carrier]);
-    if turn == Turn::Quarter {
-        cells.push(neighbour(carrier, towards));
+    cells.extend([step.from, neighbour(step.from, support)]);
+    let landing = neighbour(step.to(), step.motion.landing()?);
+    if !cells.contains(&landing) {
+        cells.push(landing);
     }
-    Some((cells, pivot_axis(support, towards)))
+    Some((cells, axis_of_turn(support, towards)))
 }
 
 /// Answers that are kept. Which were kept first depends on what is asked, never
@@ -86,5 +86,22 @@ impl<K: Eq + Hash, V: Copy> Memo<K, V> {
         let answer = find(&key);
         known().insert(key, answer);
         answer
+    }
+
+    /// The answer to `key`, if there is one.
+    pub fn known(&self, key: &K) -> Option<V> {
+        self.0.lock().expect("no thread panics while it holds the answers").get(key).copied()
+    }
+
+    /// Replaces the answer to `key`.
+    pub fn set(&self, key: K, answer: V) {
+        self.0.lock().expect("no thread panics while it holds the answers").insert(key, answer);
+    }
+
+    /// Approximate memory in bytes, where a key owns so much heap.
+    pub fn bytes(&self, heap_of_key: usize) -> usize {
+        let known = self.0.lock().expect("no thread panics while it holds the answers");
+        // Slots that are free, and a byte of control for each, are part of the table.
+        known.capacity() * (size_of::<(K, V)>() + 1) * 8 / 7 + known.len() * heap_of_key
     }
 }

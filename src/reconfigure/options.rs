@@ -4,9 +4,12 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
-use planners::Progress;
+pub use planners::Pass;
 
-use super::plan::Objective;
+use crate::robot::FaceConnection;
+
+use super::action::Action;
+use super::plan::{Objective, Plan};
 
 /// Which transitions a search goes by.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -49,8 +52,11 @@ pub struct Options {
     pub time_limit: Option<Duration>,
     /// Expansions to stop after.
     pub max_expansions: Option<u64>,
-    /// Approximate memory of the search in bytes to stop at.
+    /// Memory in bytes that is not to be exceeded: of the search with all that it remembers of the oracle's answers, in
+    /// approximate bytes, or as `measure_bytes` finds it.
     pub max_bytes: Option<usize>,
+    /// Measures the memory in use in bytes, for a caller that has a process to itself.
+    pub measure_bytes: Option<fn() -> Option<usize>>,
     /// Set it from any thread to stop.
     pub cancel: Option<Arc<AtomicBool>>,
     /// Plan by geometry and connectedness alone, for comparison.
@@ -63,11 +69,56 @@ pub struct Options {
     pub seed: u64,
 }
 
-/// What a caller sees of a running search.
+/// What a caller sees of a running search: what is new, and all that is known by then.
+///
+/// Bounds only ever get tighter from one event to the next, and every plan is better than those before it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Event<A = Action, C = FaceConnection> {
+    /// What is new.
+    pub news: News<A, C>,
+    /// What is known.
+    pub known: Known,
+}
+
+/// What is new about a running search.
+#[derive(Clone, Debug, PartialEq)]
+pub enum News<A = Action, C = FaceConnection> {
+    /// It goes on.
+    Progress,
+    /// A plan that is better than all before it, by the objective: complete, and as good to carry out as the last one.
+    Plan(Plan<A, C>),
+    /// More is proved about all plans.
+    Bound,
+}
+
+/// What is known of a search that is not done.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Event {
-    /// The search itself; widths are margins, costs are moves.
-    pub progress: Progress,
+pub struct Known {
+    /// What the search is doing.
+    pub pass: Pass,
+    /// Margin of the best plan so far, its proved lower end; `None` without one, or where plans are made by geometry alone.
+    pub margin: Option<f64>,
+    /// Moves of the best plan so far.
+    pub moves: Option<u32>,
+    /// No plan has a larger margin.
+    pub margin_at_most: f64,
+    /// No plan that would be better than the best so far, or as good, has fewer moves.
+    pub moves_at_least: u32,
+    /// What the search has spent.
+    pub statistics: planners::Statistics,
     /// Structures that the oracle has assessed.
     pub oracle_solves: u64,
+}
+
+impl Known {
+    /// What is known before a search begins.
+    pub(super) const NOTHING: Self = Self {
+        pass: Pass::Greedy,
+        margin: None,
+        moves: None,
+        margin_at_most: f64::INFINITY,
+        moves_at_least: 0,
+        statistics: planners::Statistics { expanded: 0, generated: 0, certified: 0, states: 0, bytes: 0 },
+        oracle_solves: 0,
+    };
 }

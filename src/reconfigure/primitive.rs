@@ -79,7 +79,7 @@ impl Space for Primitive<'_> {
         let attach = missing.map(Step::Attach);
         let detach = from.bonds.iter().map(|&bond| Step::Detach(bond));
         let moves = self.domain.moves(&from.layout).into_iter();
-        let moves = moves.filter(|step| step.is_allowed_by(&from.layout, &from.bonds)).map(Step::Move);
+        let moves = moves.filter(|&step| self.domain.allows(&from.layout, &from.bonds, step)).map(Step::Move);
         attach.chain(detach).chain(moves).filter_map(|step| self.transition(from, step)).collect()
     }
 
@@ -104,5 +104,9 @@ impl Space for Primitive<'_> {
 
     fn heap_bytes(&self, state: &State) -> usize {
         size_of_val(state.layout.placed()) + size_of_val(&*state.bonds)
+    }
+
+    fn memory_bytes(&self) -> usize {
+        self.domain.memory_bytes()
     }
 }

@@ -7,9 +7,11 @@
 use crate::robot::{Cell, Configuration, FaceConnection, Goal, ModuleLoad, Orientation, Placement, Port};
 
 use super::goal::GoalTest;
+use super::heuristic::{Reach, Targets};
 use super::layout::{Bond, Layout, Placed};
-use super::moves::Ability;
+use super::moves::Move;
 use super::refusal::{Rejection, check};
+use super::ways::Ability;
 
 /// What makes modules interchangeable: those of one class can swap places
 /// without a difference to geometry, statics or the goal.
@@ -33,6 +35,7 @@ pub struct Class {
 pub struct Problem {
     start: Configuration,
     classes: Vec<Class>,
+    abilities: Vec<Ability>,
     class_of: Vec<u16>,
     layout: Layout,
     bonds: Vec<Bond>,
@@ -49,9 +52,15 @@ impl Problem {
     pub fn new(start: &Configuration, goal: &Goal) -> Result<Self, Rejection> {
         check(start, goal)?;
         let (classes, class_of) = classes(start, goal.matching.labelled);
-        let goal = GoalTest::new(start, &class_of, &classes, goal)?;
+        let ability = |class: &Class| {
+            let ability = Ability::new(&start.catalogue, class.module_type);
+            if class.fixed { ability.held() } else { ability }
+        };
+        let abilities: Vec<_> = classes.iter().map(ability).collect();
+        let reaches = abilities.iter().map(Reach::of).collect();
+        let goal = GoalTest::new(start, &class_of, &classes, reaches, goal)?;
         let layout = layout(start, &classes, &class_of);
-        Ok(Self { layout, bonds: bonds(start), start: start.clone(), classes, class_of, goal })
+        Ok(Self { layout, bonds: bonds(start), start: start.clone(), classes, abilities, class_of, goal })
     }
 
     /// The start as it was given.
@@ -80,11 +89,19 @@ impl Problem {
     }
 
     /// What modules of a class can do. Fixed modules carry others but do not move.
-    pub fn ability(&self, class: u16) -> Ability {
-        let class = self.class(class);
-        let lattice = &self.start.catalogue.module_types[class.module_type].cell();
-        let free = !class.fixed;
-        Ability { slide: free && lattice.slide, pivot: free && lattice.pivot, hinge: lattice.hinge.is_some() }
+    pub fn ability(&self, class: u16) -> &Ability {
+        &self.abilities[usize::from(class)]
+    }
+
+    /// The cells that a move may need filled or empty, beside those that it sweeps.
+    pub fn needs(&self, step: Move) -> Vec<Cell> {
+        let way = self.abilities.iter().find_map(|ability| ability.way(step));
+        way.map_or_else(Vec::new, |way| way.needs(step.from).collect())
+    }
+
+    /// A layout of this problem's modules as what is to be reached.
+    pub fn targets(&self, layout: &Layout) -> Targets {
+        Targets::new(layout, self.abilities.iter().map(Reach::of).collect())
     }
 
     /// Whether the orientation of any module matters.

@@ -3,7 +3,7 @@
 
 use std::time::Instant;
 
-use planners::{Space, Width};
+use planners::{Reversible, Space, Width};
 
 use crate::robot::{Configuration, FaceConnection, Goal};
 use crate::statics::Bracket;
@@ -67,7 +67,12 @@ pub fn solve(
             Reduction::Saturated => {
                 let space = Saturated::new(&domain, ends.start_width(), ends.at_most());
                 let steps = |path: &[saturated::Action]| expand(&problem, path);
-                task.run(&space, &Plans { domain: &domain, steps }, on_event)
+                let plans = Plans { domain: &domain, steps };
+                // Where it is known what the goal looks like, the search comes from there as well.
+                match space.goals().is_empty() {
+                    true => task.run(&space, &plans, on_event),
+                    false => task.run_with(&space, &plans, &|search, floor| search.from_both_ends(floor), on_event),
+                }
             }
             Reduction::Primitive => {
                 let space = Primitive::new(&domain, ends.start_width(), ends.at_most());
@@ -159,10 +164,12 @@ impl<S: Space, F: Fn(&[S::Action]) -> Vec<Step>> Translation<S> for Plans<'_, F>
 
     /// The moves of a plan, up to the order of independent ones.
     fn key(&self, path: &[S::Action]) -> Trace {
-        Trace::new((self.steps)(path).iter().filter_map(|step| match step {
+        let steps = (self.steps)(path);
+        let moves = steps.iter().filter_map(|step| match step {
             Step::Move(step) => Some(*step),
             Step::Attach(_) | Step::Detach(_) => None,
-        }))
+        });
+        Trace::new(moves, |step| self.domain.problem.needs(step))
     }
 
     fn plan(&self, path: &[S::Action]) -> Plan {

@@ -1,11 +1,11 @@
 //! Primitive steps on cells, and what they do to a configuration: exactly, on
 //! integers, so that a step and its reversal return the identical state.
 
-use crate::robot::Configuration;
+use crate::robot::{Configuration, Motion};
 
 use super::action::Action;
 use super::layout::{Bond, neighbour};
-use super::moves::{Motion, Move};
+use super::moves::Move;
 use super::problem::{bonds, cells, connection, module_at};
 
 /// A primitive action on cells.
@@ -27,13 +27,11 @@ impl Step {
             Self::Attach(bond) => Action::Attach(connection(before, bond)?),
             Self::Detach(bond) => Action::Detach(connection(before, bond)?),
             Self::Move(step) => {
-                let (module, to) = (module_at(before, step.from)?, step.to());
-                match step.motion {
-                    Motion::Slide { .. } => Action::Slide { module, to },
-                    Motion::Pivot { support, .. } => {
-                        Action::Pivot { module, support: module_at(before, neighbour(step.from, support))?, to }
-                    }
-                }
+                let support = match step.motion {
+                    Motion::Translation { .. } => None,
+                    Motion::Rotation { support, .. } => Some(module_at(before, neighbour(step.from, support))?),
+                };
+                Action::Move { motion: step.kind, module: module_at(before, step.from)?, support, to: step.to() }
             }
         })
     }
@@ -53,7 +51,7 @@ impl Step {
     }
 
     /// The steps that lead back exactly. A move may have engaged faces that were
-    /// not engaged before (a slide engages all that it slides along), so its
+    /// not engaged before (a translation engages all that it ends beside), so its
     /// way back ends with releasing them.
     pub fn reversal(self, before: &Configuration) -> Vec<Self> {
         match self {

@@ -2,8 +2,7 @@
 
 use crate::robot::Cell;
 
-use super::layout::neighbour;
-use super::moves::{Motion, Move, Turn};
+use super::moves::Move;
 
 /// A sequence of moves up to the order of independent ones: of all orders that
 /// swaps of neighbouring independent moves lead to, the smallest. Equal traces
@@ -15,9 +14,10 @@ use super::moves::{Motion, Move, Turn};
 pub struct Trace(Vec<Move>);
 
 impl Trace {
-    /// The trace of a sequence of moves.
-    pub fn new(moves: impl IntoIterator<Item = Move>) -> Self {
-        let mut left: Vec<(Move, Vec<Cell>)> = moves.into_iter().map(|step| (step, footprint(step))).collect();
+    /// The trace of a sequence of moves. `needs` are the cells that a move's motion may need filled or empty.
+    pub fn new(moves: impl IntoIterator<Item = Move>, needs: impl Fn(Move) -> Vec<Cell>) -> Self {
+        let footprint = |step| (step, footprint(step, needs(step)));
+        let mut left: Vec<(Move, Vec<Cell>)> = moves.into_iter().map(footprint).collect();
         let mut normal = Vec::with_capacity(left.len());
         while !left.is_empty() {
             let is_free = |at: &usize| left[..*at].iter().all(|before| independent(before, &left[*at]));
@@ -28,15 +28,12 @@ impl Trace {
     }
 }
 
-/// The cells whose filling the move depends on: its room, and all cells that
+/// The cells whose filling the move depends on: what it needs, its room, and all cells that
 /// may hold it.
-fn footprint(step: Move) -> Vec<Cell> {
-    let mut cells = step.room();
+fn footprint(step: Move, mut cells: Vec<Cell>) -> Vec<Cell> {
+    cells.extend(step.room());
     cells.extend([step.from, step.to()]);
     cells.extend(step.sides().into_iter().map(|(cell, _)| cell));
-    if let Motion::Pivot { support, towards, turn: Turn::Quarter } = step.motion {
-        cells.push(neighbour(neighbour(step.from, support), towards));
-    }
     cells
 }
 

@@ -1,16 +1,19 @@
-//! Module types with the connectors they carry.
+//! Module types with the connectors they carry and the motions that they make.
 
 use crate::statics::{Connector, Model};
 
 use super::module_type::ModuleType;
+use super::stencil::MotionType;
 
-/// A set of module types with their connectors.
+/// A set of module types with their connectors and motions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Catalogue {
     /// Name (of a built-in) or where it was read from.
     pub name: String,
     /// Connector models.
     pub connectors: Vec<Connector>,
+    /// What lattice modules may be capable of.
+    pub motions: Vec<MotionType>,
     /// Module types.
     pub module_types: Vec<ModuleType>,
 }
@@ -41,6 +44,11 @@ impl Catalogue {
         let hinge = |module_type: usize| self.module_types[module_type].cell().hinge;
         let (a, b) = (hinge(pivoting)?, hinge(supporter)?);
         Some(if self.connectors[b].strength < self.connectors[a].strength { b } else { a })
+    }
+
+    /// The motion that plans call `name`, as an index into [`Catalogue::motions`].
+    pub fn find_motion(&self, name: &str) -> Option<usize> {
+        self.motions.iter().position(|motion| motion.name == name)
     }
 
     /// The module type that configurations call `name`, as an index into

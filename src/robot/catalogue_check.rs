@@ -11,17 +11,21 @@ use super::problem::{Fault, Findings, Part, Problem};
 const SAME_LENGTH: f64 = 1e-12;
 
 impl Catalogue {
-    /// Everything that is wrong with the catalogue, connectors first.
+    /// Everything that is wrong with the catalogue, connectors first, then motions.
     pub fn problems(&self) -> Vec<Problem> {
         let mut findings = Findings(Vec::new());
         findings.distinct(Part::Connector, "name", self.connectors.iter().map(|c| c.name.as_str()));
         for (i, connector) in self.connectors.iter().enumerate() {
             check_connector(&mut findings, Part::Connector(i), connector);
         }
+        self.check_motions(&mut findings);
         findings.distinct(Part::ModuleType, "name", self.module_types.iter().map(|t| t.name.as_str()));
         for (i, module_type) in self.module_types.iter().enumerate() {
             module_type.check(&mut findings, i, &self.connectors);
             self.check_module_type(&mut findings, Part::ModuleType(i), module_type);
+            if let Some(lattice) = &module_type.lattice {
+                self.check_motions_of(&mut findings, i, lattice);
+            }
         }
         findings.0
     }

@@ -127,6 +127,22 @@ impl Orientation {
         Self(std::array::from_fn(|i| std::array::from_fn(|j| (0..3).map(|k| a[i][k] * b[k][j]).sum())))
     }
 
+    /// All 24, in a fixed order.
+    pub fn all() -> impl Iterator<Item = Self> {
+        let columns = |x: Face, y: Face| {
+            let (a, b) = (x.step(), y.step());
+            let z: Cell = std::array::from_fn(|i| a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3]);
+            Self(std::array::from_fn(|i| [a[i] as i8, b[i] as i8, z[i] as i8]))
+        };
+        let pairs = Face::ALL.into_iter().flat_map(|x| Face::ALL.map(|y| (x, y)));
+        pairs.filter(|(x, y)| x.axis() != y.axis()).map(move |(x, y)| columns(x, y))
+    }
+
+    /// Where it takes a cell that is counted from the module's own.
+    pub fn carry(self, cell: Cell) -> Cell {
+        std::array::from_fn(|i| (0..3).map(|k| i32::from(self.0[i][k]) * cell[k]).sum())
+    }
+
     /// The same rotation as a unit quaternion.
     pub fn rotation(self) -> Rotation {
         let matrix = Matrix3::from_fn(|i, j| f64::from(self.0[i][j]));
@@ -135,9 +151,7 @@ impl Orientation {
 
     /// The world direction that the module's face points in.
     pub fn to_world(self, face: Face) -> Face {
-        let step = face.step();
-        let world = std::array::from_fn(|i| (0..3).map(|k| i32::from(self.0[i][k]) * step[k]).sum());
-        Face::from_step(world).expect("a signed permutation keeps unit steps")
+        Face::from_step(self.carry(face.step())).expect("a signed permutation keeps unit steps")
     }
 
     /// The module's face that points in this world direction.

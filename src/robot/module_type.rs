@@ -112,13 +112,11 @@ pub struct LatticeType {
     /// Connector on every face: index into [`Catalogue::connectors`](super::Catalogue::connectors). A patch
     /// connector without points takes the corners of the face it sits on.
     pub face: usize,
-    /// Connector that holds the module at a shared edge while it pivots, z
+    /// Connector that holds the module at a shared edge while it turns about it, z
     /// along the edge: index into [`Catalogue::connectors`](super::Catalogue::connectors).
     pub hinge: Option<usize>,
-    /// Whether it can slide over the faces of two coplanar neighbours.
-    pub slide: bool,
-    /// Whether it can pivot about an edge shared with a neighbour.
-    pub pivot: bool,
+    /// What it is capable of: indices into [`Catalogue::motions`](super::Catalogue::motions).
+    pub motions: Vec<usize>,
 }
 
 impl PortType {

@@ -2,6 +2,9 @@
 
 use std::fmt;
 
+use super::lattice::Cell;
+use super::stencil::FARTHEST_CELL;
+
 /// One thing that is wrong, at one place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Problem {
@@ -19,8 +22,14 @@ pub struct Problem {
 pub enum Part {
     /// One of [`Catalogue::connectors`](super::Catalogue::connectors).
     Connector(usize),
+    /// One of [`Catalogue::motions`](super::Catalogue::motions).
+    MotionType(usize),
+    /// A stencil of a motion: the motion, then the stencil.
+    Stencil(usize, usize),
     /// One of [`Catalogue::module_types`](super::Catalogue::module_types).
     ModuleType(usize),
+    /// A motion of a module type: the type, then the place in its [`LatticeType::motions`](super::LatticeType::motions).
+    MotionOfType(usize, usize),
     /// A body of a module type: the type, then the body.
     BodyType(usize, usize),
     /// A joint of a module type: the type, then the joint.
@@ -73,6 +82,53 @@ pub enum Fault {
     OriginOutsidePatch,
     /// A hinge that is not a `box` connector.
     HingeNotBox,
+    /// A motion without a single way to make it.
+    NoStencils,
+    /// The name of a built-in motion, for something else.
+    NotTheBuiltIn,
+    /// A way that leads nowhere.
+    NoDisplacement,
+    /// The edge of a rotation lies between two faces that are not perpendicular.
+    NoEdge,
+    /// A cell of a stencil is beyond [`FARTHEST_CELL`](super::FARTHEST_CELL).
+    FarCell {
+        /// Index of the cell in its list.
+        cell: usize,
+    },
+    /// A cell of a stencil is the module's own.
+    OwnCell {
+        /// Index of the cell in its list.
+        cell: usize,
+    },
+    /// A cell must be filled and empty at once.
+    OccupiedAndFree {
+        /// Index of the cell among those that must be empty.
+        cell: usize,
+    },
+    /// The way leads through a cell that must be filled.
+    InTheWay {
+        /// Index of the cell among those that must be filled.
+        cell: usize,
+    },
+    /// Somewhere on a translation no module that the stencil needs is beside the moving one.
+    NothingAlongside {
+        /// The cell that the module is in there, or the first of them.
+        at: Cell,
+    },
+    /// The support of a rotation is not among the cells that must be filled.
+    NoSupport {
+        /// Its cell.
+        support: Cell,
+    },
+    /// The module that a rotation lands on is not among the cells that must be filled.
+    NoLanding {
+        /// Its cell.
+        landing: Cell,
+    },
+    /// No way of the motion leads back, though every action must be reversible.
+    NoWayBack,
+    /// The module type has no hinge to turn about.
+    NoHinge,
     /// The solid is not a cube of the pitch's edge length.
     NotACell,
     /// It changes when the module is turned in the lattice, where all 24
@@ -157,7 +213,10 @@ impl fmt::Display for Part {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Connector(i) => write!(f, "connectors[{i}]"),
+            Self::MotionType(i) => write!(f, "motions[{i}]"),
+            Self::Stencil(i, j) => write!(f, "motions[{i}].stencils[{j}]"),
             Self::ModuleType(i) => write!(f, "module_types[{i}]"),
+            Self::MotionOfType(i, j) => write!(f, "module_types[{i}].motions[{j}]"),
             Self::BodyType(i, j) => write!(f, "module_types[{i}].bodies[{j}]"),
             Self::JointType(i, j) => write!(f, "module_types[{i}].joints[{j}]"),
             Self::PortType(i, j) => write!(f, "module_types[{i}].ports[{j}]"),
@@ -184,6 +243,19 @@ impl fmt::Display for Fault {
             Self::NoModules => f.write_str("there are no modules"),
             Self::OriginOutsidePatch => f.write_str("the origin must lie in the convex hull of the points"),
             Self::HingeNotBox => f.write_str("a hinge must be a box connector"),
+            Self::NoStencils => f.write_str("there is no way to make this motion"),
+            Self::NotTheBuiltIn => f.write_str("has the name of a built-in motion and is another"),
+            Self::NoDisplacement => f.write_str("leads nowhere"),
+            Self::NoEdge => f.write_str("the support and the side turned to must be perpendicular"),
+            Self::FarCell { cell } => write!(f, "entry {cell} is more than {FARTHEST_CELL} cells away"),
+            Self::OwnCell { cell } => write!(f, "entry {cell} is the module's own cell"),
+            Self::OccupiedAndFree { cell } => write!(f, "entry {cell} must be filled and empty at once"),
+            Self::InTheWay { cell } => write!(f, "entry {cell} must be filled and is in the way"),
+            Self::NothingAlongside { at } => write!(f, "nothing holds the module in cell {at:?}"),
+            Self::NoSupport { support } => write!(f, "the support {support:?} need not be filled"),
+            Self::NoLanding { landing } => write!(f, "cell {landing:?}, which the module lands on, need not be filled"),
+            Self::NoWayBack => f.write_str("no way of the motion leads back"),
+            Self::NoHinge => f.write_str("turns about an edge, and the module type has no hinge"),
             Self::NotACell => f.write_str("a lattice module must be a cube whose edge is the pitch"),
             Self::NotSymmetric => f.write_str("must be the same in all 24 orientations of a cube"),
             Self::DifferentPitch { first } => write!(f, "the pitch differs from that of module {first}"),

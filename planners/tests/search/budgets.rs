@@ -111,6 +111,7 @@ fn a_generous_budget_is_not_felt() {
         max_expansions: Some(1000),
         max_bytes: Some(1_000_000),
         cancel: Some(Arc::new(AtomicBool::new(false))),
+        ..Budget::default()
     };
     let graph = corridor(100);
     let mut search = Search::new(&graph, Options { budget, ..options() });

@@ -23,7 +23,7 @@ pub trait Family: Sync {
     ///
     /// # Errors
     /// What cannot be planned for.
-    fn solve(&self, options: &Options, on_event: &mut dyn FnMut(&Event)) -> Result<Answer<Self>, Refusal>;
+    fn solve(&self, options: &Options, on_event: &mut OnEvent<'_, Self>) -> Result<Answer<Self>, Refusal>;
 
     /// Checks a plan by code that shares no decision with the search.
     ///
@@ -57,12 +57,15 @@ pub trait Family: Sync {
 /// What a search answers to a problem.
 pub type Answer<F> = Report<<F as Family>::Action, <F as Family>::Connection>;
 
+/// What looks at a running search.
+pub type OnEvent<'e, F> = dyn FnMut(&Event<<F as Family>::Action, <F as Family>::Connection>) + 'e;
+
 impl Family for LatticeProblem {
     type Action = Action;
     type Connection = FaceConnection;
     type Touched = reconfigure::assembly::Touched;
 
-    fn solve(&self, options: &Options, on_event: &mut dyn FnMut(&Event)) -> Result<Report, Refusal> {
+    fn solve(&self, options: &Options, on_event: &mut OnEvent<'_, Self>) -> Result<Report, Refusal> {
         solve(&self.start, &self.goal, options, on_event)
     }
 
@@ -82,9 +85,10 @@ impl Family for LatticeProblem {
         let id = |module: usize| &self.start.modules[module].id;
         match action {
             Action::Attach(pair) | Action::Detach(pair) => format!("{} {}", action.kind(), faces(&self.start, pair)),
-            Action::Slide { module, to } => format!("slide  {} to {}", id(*module), cell(*to)),
-            Action::Pivot { module, support, to } => {
-                format!("pivot  {} about {} to {}", id(*module), id(*support), cell(*to))
+            Action::Move { motion, module, support, to } => {
+                let motion = &self.start.catalogue.motions[usize::from(*motion)].name;
+                let about = support.map_or_else(String::new, |support| format!("about {} ", id(support)));
+                format!("{motion:<6} {} {about}to {}", id(*module), cell(*to))
             }
         }
     }
@@ -103,7 +107,7 @@ impl Family for LinkageProblem {
     type Connection = Held;
     type Touched = Touched;
 
-    fn solve(&self, options: &Options, on_event: &mut dyn FnMut(&Event)) -> Result<Answer<Self>, Refusal> {
+    fn solve(&self, options: &Options, on_event: &mut OnEvent<'_, Self>) -> Result<Answer<Self>, Refusal> {
         linkage::solve(&self.start, &self.goal, options, on_event)
     }
 

@@ -3,7 +3,7 @@
 use std::io::{self, IsTerminal, Write};
 use std::time::{Duration, Instant};
 
-use steadfast::reconfigure::Event;
+use steadfast::reconfigure::{Event, Known};
 
 /// How often the line is drawn anew.
 const INTERVAL: Duration = Duration::from_millis(100);
@@ -21,13 +21,13 @@ impl ProgressLine {
     }
 
     /// Draws the line, unless it was drawn a moment ago.
-    pub fn show(&mut self, event: &Event) {
+    pub fn show<A, C>(&mut self, event: &Event<A, C>) {
         if !self.on_terminal || self.drawn.is_some_and(|drawn| drawn.elapsed() < INTERVAL) {
             return;
         }
         self.drawn = Some(Instant::now());
         // A progress line that cannot be written is no reason to stop.
-        let _ = write!(io::stderr().lock(), "\r\x1b[K{}", line(event, self.began.elapsed()));
+        let _ = write!(io::stderr().lock(), "\r\x1b[K{}", line(&event.known, self.began.elapsed()));
         let _ = io::stderr().flush();
     }
 
@@ -39,25 +39,23 @@ impl ProgressLine {
     }
 }
 
-fn line(event: &Event, elapsed: Duration) -> String {
-    let progress = &event.progress;
-    let mut parts = vec![
-        format!("{:.0} s", elapsed.as_secs_f64()),
-        format!("{} expanded", progress.statistics.expanded),
-        format!("{} oracle solves", event.oracle_solves),
-    ];
-    match progress.best_width {
-        Some(width) if width.is_finite() => parts.push(format!("best margin {width:.4}")),
-        _ => parts.push("no plan yet".to_string()),
+fn line(known: &Known, elapsed: Duration) -> String {
+    let mut parts = Vec::new();
+    match known.margin {
+        Some(margin) => parts.push(format!("best margin {margin:.4}")),
+        None if known.moves.is_some() => {}
+        None => parts.push("no plan yet".to_string()),
     }
-    if progress.width_at_most.is_finite() {
-        parts.push(format!("none above {:.4}", progress.width_at_most));
+    if known.margin_at_most.is_finite() {
+        parts.push(format!("none above {:.4}", known.margin_at_most));
     }
-    if let Some(cost) = progress.best_cost {
-        parts.push(format!("{cost} moves"));
+    if let Some(moves) = known.moves {
+        parts.push(format!("{moves} moves"));
     }
-    if progress.cost_at_least > 0 && progress.cost_at_least < u32::MAX {
-        parts.push(format!("none under {} moves", progress.cost_at_least));
+    if known.moves_at_least > 0 {
+        parts.push(format!("none under {}", known.moves_at_least));
     }
-    parts.join(" | ")
+    let spent = &known.statistics;
+    let (seconds, solves) = (elapsed.as_secs_f64(), known.oracle_solves);
+    format!("{} | {} states expanded, {solves} oracle solves, {seconds:.0} s", parts.join(", "), spent.expanded)
 }

@@ -1,20 +1,19 @@
 //! `plan START GOAL`
 
 use std::io;
-use std::path::Path;
 use std::process;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use steadfast::io::{Problem, read_problem};
-use steadfast::reconfigure::{Event, Method, Objective, Options, Outcome, Reduction, Refusal};
+use steadfast::reconfigure::{Method, Objective, Options, Outcome, Reduction, Refusal};
 
 use crate::arguments::{ObjectiveArgument, PlannerArgument, PlanningArguments};
 use crate::exit::Exit;
 use crate::family::{Answer, Family};
 use crate::progress::ProgressLine;
 use crate::summary::summary;
-use crate::{files, output};
+use crate::{files, memory, output};
 
 /// Exit code of a program that a second Ctrl-C ended at once.
 const INTERRUPTED: i32 = 130;
@@ -61,7 +60,7 @@ fn plan<F: Family>(arguments: &PlanningArguments, problem: &F) -> io::Result<Exi
         }
     };
     if let Some(out) = &arguments.out
-        && let Err(trouble) = save(out, &document)
+        && let Err(trouble) = files::save(out, &document)
     {
         output::message(&format!("error: {}: {trouble}", out.display()))?;
         output::result(&document)?;
@@ -101,6 +100,8 @@ fn search<F: Family>(arguments: &PlanningArguments, problem: &F) -> Result<Resul
         min_margin: arguments.min_margin,
         plans: arguments.plans as usize,
         time_limit: arguments.time_limit,
+        max_bytes: arguments.memory_limit.or_else(memory::half_of_the_machine),
+        measure_bytes: Some(memory::in_use),
         cancel: Some(cancelled_by_interrupt()?),
         ignore_stability: arguments.ignore_stability,
         reduction: if arguments.primitive { Reduction::Primitive } else { Reduction::Saturated },
@@ -115,13 +116,13 @@ fn search<F: Family>(arguments: &PlanningArguments, problem: &F) -> Result<Resul
     let threads = arguments.threads.map_or(0, usize::from);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(|error| error.to_string())?;
     let mut line = ProgressLine::new();
-    let report = pool.install(|| problem.solve(&options, &mut |event: &Event| line.show(event)));
+    let report = pool.install(|| problem.solve(&options, &mut |event| line.show(event)));
     line.clear();
     Ok(report)
 }
 
 /// A flag that the first Ctrl-C raises; the second one ends the program.
-fn cancelled_by_interrupt() -> Result<Arc<AtomicBool>, String> {
+pub fn cancelled_by_interrupt() -> Result<Arc<AtomicBool>, String> {
     let cancel = Arc::new(AtomicBool::new(false));
     let raised = Arc::clone(&cancel);
     let on_interrupt = move || {
@@ -131,12 +132,4 @@ fn cancelled_by_interrupt() -> Result<Arc<AtomicBool>, String> {
     };
     ctrlc::set_handler(on_interrupt).map_err(|error| error.to_string())?;
     Ok(cancel)
-}
-
-/// Writes beside the file and renames, so that no half-written plan is left.
-fn save(path: &Path, text: &str) -> io::Result<()> {
-    let mut beside = path.as_os_str().to_owned();
-    beside.push(".part");
-    std::fs::write(&beside, text)?;
-    std::fs::rename(&beside, path)
 }

@@ -7,7 +7,7 @@ use steadfast::reconfigure::{Limit, Objective, Outcome, Plan, Report};
 use steadfast::statics::Bracket;
 
 use crate::family::{Answer, Family};
-use crate::verify;
+use crate::{memory, verify};
 
 /// What was found, what it is worth, what limits it, and what was proved.
 pub fn summary<F: Family>(
@@ -35,8 +35,12 @@ pub fn summary<F: Family>(
     let statistics = &report.statistics;
     let _ = writeln!(
         text,
-        "{} states expanded, {} margins asked for, {} oracle solves, {:.2} s",
-        statistics.expanded, statistics.certified, statistics.oracle_solves, statistics.seconds
+        "{} states expanded, {} margins asked for, {} oracle solves, {:.2} s, {}",
+        statistics.expanded,
+        statistics.certified,
+        statistics.oracle_solves,
+        statistics.seconds,
+        memory::spelled(statistics.bytes)
     );
     text
 }

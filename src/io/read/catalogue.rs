@@ -12,9 +12,10 @@ use super::decode::decode;
 use super::faults;
 use super::lattice_type::lattice_type;
 use super::module_type::module_type;
+use super::motion::motions;
 use super::names::Names;
 use super::terrain;
-use crate::robot::{BUILT_IN, Catalogue, Shape};
+use crate::robot::{BUILT_IN, BUILT_IN_MOTIONS, Catalogue, Shape};
 use crate::spatial::Vec3;
 
 /// Reads a catalogue that is a file of its own.
@@ -65,10 +66,15 @@ fn convert(wire: &wire::Catalogue, place: &Place<'_>, source: &str, findings: &m
     let types = place.key("module_types");
     let names = wire.connectors.keys().map(String::as_str).collect();
     let connector_names = Names::new("connectors", names, |_| place.clone(), findings);
+    let motions_at = place.key("motions");
+    let motions = motions(wire, &motions_at, findings);
+    let own = wire.motions.keys().map(String::as_str).filter(|name| !BUILT_IN_MOTIONS.contains(name));
+    let names = BUILT_IN_MOTIONS.into_iter().chain(own).collect();
+    let motion_names = Names::new("motions", names, |_| motions_at.clone(), findings);
     let read = |(index, (name, wire)): (usize, (&String, &wire::ModuleType))| {
         let place = types.entry(index);
         match &wire.ports {
-            wire::Ports::Faces(_) => lattice_type(name, wire, &connector_names, &place, findings),
+            wire::Ports::Faces(_) => lattice_type(name, wire, &connector_names, &motion_names, &place, findings),
             wire::Ports::List(ports) => module_type(name, wire, ports, &connector_names, &place, findings),
         }
     };
@@ -77,13 +83,14 @@ fn convert(wire: &wire::Catalogue, place: &Place<'_>, source: &str, findings: &m
     let catalogue = Catalogue {
         name: wire.name.clone().unwrap_or_else(|| source.to_string()),
         connectors: connectors(&wire.connectors),
+        motions: motions?,
         module_types: module_types.into_iter().flatten().collect(),
     };
     if !complete {
         return None;
     }
     let problems = catalogue.problems();
-    faults::of_catalogue(&problems, place, findings);
+    faults::of_catalogue(&problems, catalogue.motions.len() - wire.motions.len(), place, findings);
     problems.is_empty().then_some(catalogue)
 }
 

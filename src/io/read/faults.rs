@@ -5,11 +5,15 @@ use super::super::findings::{Findings, Place};
 use super::super::json::clipped;
 use crate::robot::{Fault, Part, Problem};
 
-/// Reports the problems of a catalogue that stands at `place`.
-pub(super) fn of_catalogue(problems: &[Problem], place: &Place<'_>, findings: &mut Findings) {
+/// Reports the problems of a catalogue that stands at `place` and has so many built-in motions before its own.
+pub(super) fn of_catalogue(problems: &[Problem], built_in: usize, place: &Place<'_>, findings: &mut Findings) {
+    let motion = |index: usize| place.key("motions").entry(index.saturating_sub(built_in));
     for problem in problems {
         let part = match problem.part {
             Part::Connector(index) => place.key("connectors").entry(index),
+            Part::MotionType(index) => motion(index),
+            Part::Stencil(index, stencil) => stencil_place(&motion(index).index(stencil), problem),
+            Part::MotionOfType(index, i) => place.key("module_types").entry(index).key("motions").index(i),
             Part::ModuleType(index) => place.key("module_types").entry(index),
             Part::BodyType(index, body) => place.key("module_types").entry(index).key("bodies").index(body),
             Part::JointType(index, joint) => place.key("module_types").entry(index).key("joints").index(joint),
@@ -17,6 +21,23 @@ pub(super) fn of_catalogue(problems: &[Problem], place: &Place<'_>, findings: &m
             _ => place.clone(),
         };
         report(problem, &field(&part, problem.field), &[], findings);
+    }
+}
+
+/// The key of the stencil at `place` that a problem is about.
+fn stencil_place<'a>(place: &Place<'a>, problem: &Problem) -> Place<'a> {
+    let list = match problem.field {
+        "by" => return place.key("to"),
+        "towards" => return place.key("about").key("towards"),
+        "" => return place.clone(),
+        list => place.key(list),
+    };
+    match problem.fault {
+        Fault::FarCell { cell }
+        | Fault::OwnCell { cell }
+        | Fault::OccupiedAndFree { cell }
+        | Fault::InTheWay { cell } => list.index(cell),
+        _ => list,
     }
 }
 
@@ -97,6 +118,61 @@ pub(super) fn describe(problem: &Problem, ids: &[&str]) -> Option<(Code, String,
             codes::UNSUPPORTED,
             owned("a hinge must be a `box` connector"),
             "its z axis lies along the edge, its torsion is the drive",
+        ),
+        Fault::NoStencils => {
+            (codes::MISSING_KEY, owned("there is no way to make this motion"), "list at least one way")
+        }
+        Fault::NotTheBuiltIn => {
+            (codes::DUPLICATE_ID, owned("has the name of a built-in motion"), "give it a name of its own")
+        }
+        Fault::NoDisplacement => (
+            codes::OUT_OF_RANGE,
+            owned("the module would stay where it is"),
+            "`to` is the cell that it arrives in, counted from its own",
+        ),
+        Fault::NoEdge => (
+            codes::MIXED,
+            owned("the faces towards the support and in this direction share no edge"),
+            "the edge lies between two faces that are perpendicular to each other",
+        ),
+        Fault::FarCell { .. } => {
+            (codes::OUT_OF_RANGE, owned("this cell is too far away"), "coordinates reach from -8 to 8")
+        }
+        Fault::OwnCell { .. } => {
+            (codes::MIXED, owned("this is the module's own cell"), "leave it out: cells are counted from the module's")
+        }
+        Fault::OccupiedAndFree { .. } => {
+            (codes::MIXED, owned("this cell must be `occupied` as well"), "leave it out of one of the two lists")
+        }
+        Fault::InTheWay { .. } => (
+            codes::OVERLAP,
+            owned("the module would pass through this cell, which must hold another"),
+            "a translation sweeps all cells on its line; a turn also those that its far corner bulges into",
+        ),
+        Fault::NothingAlongside { at } => (
+            codes::DISCONNECTED,
+            format!("nothing holds the module where it is in cell {at:?}"),
+            "list a module beside it (across its direction) there: faces hold as far as they overlap",
+        ),
+        Fault::NoSupport { support } => (
+            codes::DISCONNECTED,
+            format!("the support {support:?} is missing"),
+            "the module that carries the hinge must be there: list its cell",
+        ),
+        Fault::NoLanding { landing } => (
+            codes::DISCONNECTED,
+            format!("the module lands on cell {landing:?}, which need not hold another"),
+            "after a quarter turn it docks to the neighbour of its support: list that cell",
+        ),
+        Fault::NoWayBack => (
+            codes::MIXED,
+            owned("no way of this motion leads back, and every action must be reversible"),
+            "add the reverse, which may need no more than is there on arrival; or say \"mirrored\": true if a mirror image does",
+        ),
+        Fault::NoHinge => (
+            codes::MIXED,
+            owned("this motion turns about an edge, and the module type has no hinge"),
+            "give the module type a `hinge`: the connector that holds it at the edge",
         ),
         Fault::NotACell => (
             codes::MIXED,

@@ -18,6 +18,7 @@ pub(super) struct LatticePlans<'a> {
     start: &'a Configuration,
     modules: Names<'a>,
     goal_modules: Names<'a>,
+    motions: Names<'a>,
     plan: usize,
     cells: Cells,
     /// What was found to contradict itself so far.
@@ -31,14 +32,34 @@ impl<'a> LatticePlans<'a> {
             let ids = configuration.modules.iter().map(|module| module.id.as_str()).collect();
             Names::new("modules", ids, |_| root.clone(), findings)
         };
+        let [modules, goal_modules] = [&problem.start, &problem.goal.configuration].map(&mut names);
+        let motions = problem.start.catalogue.motions.iter().map(|motion| motion.name.as_str()).collect();
         Self {
             start: &problem.start,
-            modules: names(&problem.start),
-            goal_modules: names(&problem.goal.configuration),
+            modules,
+            goal_modules,
+            motions: Names::new("motions", motions, |_| root.clone(), findings),
             plan: 0,
             cells: Cells::of(&problem.start),
             contradictions: Vec::new(),
         }
+    }
+
+    /// The motion of the catalogue with this name, which stands at `place`.
+    fn motion(&self, name: &str, place: &Place<'_>, findings: &mut Findings) -> Option<u16> {
+        u16::try_from(self.motions.find(name, place, findings)?).ok()
+    }
+
+    /// A module that moves and its support, which the action at `place` names.
+    fn pair(&self, module: &str, support: &str, place: &Place<'_>, findings: &mut Findings) -> [Option<usize>; 2] {
+        let module = self.modules.find(module, &place.key("module"), findings);
+        let support = self.modules.find(support, &place.key("support"), findings);
+        if module.is_some() && module == support {
+            let hint = "name the neighbour that carries the hinge".to_string();
+            let message = "a module cannot support itself";
+            findings.add(&place.key("support"), codes::SELF_CONNECTION, message, hint);
+        }
+        [module, support]
     }
 
     /// An action, and the turn that the file gives with it.
@@ -56,23 +77,38 @@ impl<'a> LatticePlans<'a> {
                 (Action::Detach(pair(ports, &self.modules, &place.key("ports"), findings)?), None)
             }
             wire::Action::Slide { module, to, .. } => {
-                let module = self.modules.find(module, &place.key("module"), findings)?;
-                (Action::Slide { module, to: to.cell }, None)
+                let motion = self.motion("slide", &place.key("kind"), findings);
+                let module = self.modules.find(module, &place.key("module"), findings);
+                (Action::Move { motion: motion?, module: module?, support: None, to: to.cell }, None)
             }
             wire::Action::Pivot { module, support, axis, angle_deg, to, .. } => {
-                let module = self.modules.find(module, &place.key("module"), findings);
-                let support = self.modules.find(support, &place.key("support"), findings);
-                if module.is_some() && module == support {
-                    let hint = "name the neighbour that carries the hinge".to_string();
-                    let message = "a module cannot support itself";
-                    findings.add(&place.key("support"), codes::SELF_CONNECTION, message, hint);
-                }
-                let turn = turn(*angle_deg, &place.key("angle_deg"), findings);
-                let action = Action::Pivot { module: module?, support: support?, to: to.cell };
+                let motion = self.motion("pivot", &place.key("kind"), findings);
+                let [module, support] = self.pair(module, support, place, findings);
+                let turn = turn(*angle_deg, "the direction is in `axis`", &place.key("angle_deg"), findings);
+                let action = Action::Move { motion: motion?, module: module?, support: Some(support?), to: to.cell };
                 (action, Some(AxisAngle { axis: face(*axis), turn: turn? }))
             }
+            wire::Action::Move { motion, module, support: Some(support), turn: Some(about), to, .. } => {
+                let motion = self.motion(motion, &place.key("motion"), findings);
+                let [module, support] = self.pair(module, support, place, findings);
+                let angle_at = place.key("turn").key("angle_deg");
+                let turn = turn(about.angle_deg, "the direction is in `axis`", &angle_at, findings);
+                let action = Action::Move { motion: motion?, module: module?, support: Some(support?), to: to.cell };
+                (action, Some(AxisAngle { axis: face(about.axis), turn: turn? }))
+            }
+            wire::Action::Move { motion, module, support: None, turn: None, to, .. } => {
+                let motion = self.motion(motion, &place.key("motion"), findings);
+                let module = self.modules.find(module, &place.key("module"), findings);
+                (Action::Move { motion: motion?, module: module?, support: None, to: to.cell }, None)
+            }
+            wire::Action::Move { support, .. } => {
+                let missing = if support.is_some() { "turn" } else { "support" };
+                let hint = "a module that turns about an edge has a `support` and a `turn`, any other neither";
+                findings.add(&place.key(missing), codes::MISSING_KEY, "the key is missing", hint.to_string());
+                return None;
+            }
             wire::Action::Roll { .. } | wire::Action::Rotate { .. } => {
-                let hint = "lattice modules slide and pivot";
+                let hint = "lattice modules slide, pivot, and make what motions their catalogue has";
                 refuse(&place.key("kind"), "not a motion of lattice modules", hint, findings);
                 return None;
             }
@@ -125,16 +161,14 @@ impl Family for LatticePlans<'_> {
     }
 }
 
-fn turn(angle_deg: u32, place: &Place<'_>, findings: &mut Findings) -> Option<Turn> {
-    match angle_deg {
-        90 => Some(Turn::Quarter),
-        180 => Some(Turn::Half),
-        other => {
-            let message = format!("a cube pivots by 90 or 180 degrees, found {other}");
-            findings.add(place, codes::OUT_OF_RANGE, message, "the direction is in `axis`".to_string());
-            None
-        }
+/// How far a cube turns about an edge; `hint` says where to find in which direction.
+pub(super) fn turn(angle_deg: u32, hint: &str, place: &Place<'_>, findings: &mut Findings) -> Option<Turn> {
+    let turn = Turn::of_degrees(angle_deg);
+    if turn.is_none() {
+        let message = format!("a cube pivots by 90 or 180 degrees, found {angle_deg}");
+        findings.add(place, codes::OUT_OF_RANGE, message, hint.to_string());
     }
+    turn
 }
 
 /// The connection of two ports, which stand at `place`.
@@ -148,7 +182,8 @@ fn pair(
     Some(FaceConnection::new(a?, b?))
 }
 
-fn face(wire: wire::Axis) -> Face {
+/// The direction of an axis.
+pub(super) fn face(wire: wire::Axis) -> Face {
     match wire {
         wire::Axis::NegX => Face::NegX,
         wire::Axis::PosX => Face::PosX,

@@ -3,36 +3,32 @@
 use super::super::findings::{Findings, Place};
 use super::super::{codes, wire};
 use super::module_type::{body, refuse};
+use super::motion::of_lattice_type;
 use super::names::Names;
 use crate::robot::{BodyType, LatticeType, ModuleType};
 
-/// The lattice module type at `place`; names of connectors are those of `connectors`.
+/// The lattice module type at `place`; names of connectors and motions are among these.
 pub(super) fn lattice_type(
     name: &str,
     wire: &wire::ModuleType,
     connectors: &Names<'_>,
+    motions: &Names<'_>,
     place: &Place<'_>,
     findings: &mut Findings,
 ) -> Option<ModuleType> {
     let body = the_body(wire, place, findings);
-    let lattice = lattice(wire, connectors, place, findings);
+    let lattice = lattice(wire, connectors, motions, place, findings);
     Some(ModuleType::of_lattice(name, body?, lattice?))
 }
 
 fn lattice(
     wire: &wire::ModuleType,
     connectors: &Names<'_>,
+    motions: &Names<'_>,
     place: &Place<'_>,
     findings: &mut Findings,
 ) -> Option<LatticeType> {
-    let motion = |wanted: wire::Motion| wire.motions.contains(&wanted);
-    let (slide, pivot) = (motion(wire::Motion::Slide), motion(wire::Motion::Pivot));
-    for (index, other) in wire.motions.iter().enumerate() {
-        if matches!(other, wire::Motion::Roll | wire::Motion::Rotate) {
-            let place = place.key("motions").index(index);
-            refuse(&place, "not a motion of lattice modules", "a lattice module can \"slide\" and \"pivot\"", findings);
-        }
-    }
+    let motions = of_lattice_type(wire, motions, place, findings);
     let mut needs = |key: &str, missing: bool, hint: &str| {
         if missing {
             findings.add(&place.key(key), codes::MISSING_KEY, "the key is missing", hint.to_string());
@@ -41,7 +37,7 @@ fn lattice(
     needs("pitch_m", wire.pitch_m.is_none(), "a module with ports \"faces\" needs the edge length of its cell");
     needs("connector", wire.connector.is_none(), "a module with ports \"faces\" needs the connector of its faces");
     let hint = "a module that can pivot needs the connector that holds it at the edge meanwhile";
-    needs("hinge", pivot && wire.hinge.is_none(), hint);
+    needs("hinge", wire.hinge.is_none() && wire.motions.iter().any(|motion| motion == "pivot"), hint);
     if !wire.joints.is_empty() {
         let hint = "list its ports instead of \"faces\", or leave the joints out";
         refuse(&place.key("joints"), "a lattice module has no joints", hint, findings);
@@ -56,7 +52,7 @@ fn lattice(
     if hinge == Some(None) {
         return None; // it names a connector that is not there
     }
-    Some(LatticeType { pitch: wire.pitch_m?.0, face: face?, hinge: hinge.flatten(), slide, pivot })
+    Some(LatticeType { pitch: wire.pitch_m?.0, face: face?, hinge: hinge.flatten(), motions: motions? })
 }
 
 fn the_body(wire: &wire::ModuleType, place: &Place<'_>, findings: &mut Findings) -> Option<BodyType> {

@@ -102,7 +102,7 @@ impl Family for LinkagePlans<'_> {
                 };
                 Action::Rotate { module, joint, to, carried }
             }
-            wire::Action::Slide { .. } | wire::Action::Pivot { .. } => {
+            wire::Action::Slide { .. } | wire::Action::Pivot { .. } | wire::Action::Move { .. } => {
                 let hint = "here modules roll and rotate";
                 refuse(
                     &place.key("kind"),

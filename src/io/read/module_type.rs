@@ -6,9 +6,10 @@ use super::super::findings::{Findings, Place};
 use super::super::{codes, wire};
 use super::angle::{MICRO, steps};
 use super::catalogue::shape;
+use super::motion::OUTSIDE_LATTICES;
 use super::names::Names;
 use super::rotation::{direction, frame_along, rotation, vector};
-use crate::robot::{BodyType, JointType, ModuleType, PortPlace, PortType};
+use crate::robot::{BUILT_IN_MOTIONS, BodyType, JointType, ModuleType, PortPlace, PortType};
 use crate::spatial::{Pose, Rotation, Vec3};
 
 /// Step in degrees in which ports roll where a file says nothing.
@@ -75,24 +76,28 @@ fn not_of_lattices(wire: &wire::ModuleType, place: &Place<'_>, findings: &mut Fi
 
 /// Whether its joints move, and the step in which its ports roll.
 fn motions(wire: &wire::ModuleType, place: &Place<'_>, findings: &mut Findings) -> (bool, Option<f64>) {
-    let motion = |wanted: wire::Motion| wire.motions.contains(&wanted);
+    let known = Names::new("motions", OUTSIDE_LATTICES.into(), |_| place.clone(), findings);
+    let can = |wanted: &str| wire.motions.iter().any(|motion| motion == wanted);
     for (index, found) in wire.motions.iter().enumerate() {
         let place = place.key("motions").index(index);
-        match found {
-            wire::Motion::Slide | wire::Motion::Pivot => {
-                let hint = "a module with listed ports can \"roll\" and \"rotate\"";
-                refuse(&place, "is a motion of lattice modules", hint, findings);
-            }
-            wire::Motion::Rotate if wire.joints.is_empty() => {
+        match found.as_str() {
+            "rotate" if wire.joints.is_empty() => {
                 let hint = "list its joints, or leave the motion out";
                 refuse(&place, "a module without joints has nothing to rotate", hint, findings);
             }
-            wire::Motion::Rotate | wire::Motion::Roll => {}
+            "rotate" | "roll" => {}
+            name if BUILT_IN_MOTIONS.contains(&name) => {
+                let hint = "a module with listed ports can \"roll\" and \"rotate\"";
+                refuse(&place, "is a motion of lattice modules", hint, findings);
+            }
+            name => {
+                known.find(name, &place, findings);
+            }
         }
     }
     let step_at = place.key("roll_step_deg");
     if let Some(step) = wire.roll_step_deg {
-        if !motion(wire::Motion::Roll) {
+        if !can("roll") {
             refuse(
                 &step_at,
                 "the module does not roll",
@@ -108,8 +113,8 @@ fn motions(wire: &wire::ModuleType, place: &Place<'_>, findings: &mut Findings) 
             findings.add(&step_at, codes::OUT_OF_RANGE, message, hint);
         }
     }
-    let step = motion(wire::Motion::Roll).then(|| wire.roll_step_deg.map_or(ROLL_STEP, |step| step.0));
-    (motion(wire::Motion::Rotate), step)
+    let step = can("roll").then(|| wire.roll_step_deg.map_or(ROLL_STEP, |step| step.0));
+    (can("rotate"), step)
 }
 
 /// The body at `place`.

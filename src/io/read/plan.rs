@@ -89,7 +89,7 @@ fn proof<C>(wire: &wire::Proof, outcome: &Outcome<C>) -> Proof {
     }
 }
 
-fn statistics(wire: &wire::Statistics, place: &Place<'_>, findings: &mut Findings) -> Statistics {
+pub(super) fn statistics(wire: &wire::Statistics, place: &Place<'_>, findings: &mut Findings) -> Statistics {
     let certified = wire.certified.unwrap_or_default();
     let statistics = Statistics {
         expanded: wire.expanded,

@@ -55,8 +55,8 @@ fn check_connectors(wire: &wire::Structure, root: &Place<'_>, findings: &mut Fin
             findings.add(&place, codes::MISSING_KEY, "a patch needs its contact points", hint.to_string());
         }
     }
-    let catalogue = Catalogue { name: String::new(), connectors, module_types: Vec::new() };
-    faults::of_catalogue(&catalogue.problems(), root, findings);
+    let catalogue = Catalogue { name: String::new(), connectors, motions: Vec::new(), module_types: Vec::new() };
+    faults::of_catalogue(&catalogue.problems(), 0, root, findings);
     catalogue.connectors
 }
 

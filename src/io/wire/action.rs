@@ -68,6 +68,28 @@ pub(crate) enum Action {
         #[schemars(range(min = 0, max = 1))]
         phase: Option<Real>,
     },
+    /// A module makes another motion of the catalogue.
+    Move {
+        /// Which motion, by its name in the catalogue.
+        motion: String,
+        /// Which module.
+        module: String,
+        /// The neighbour that carries the hinge, where it turns about an edge.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        support: Option<String>,
+        /// The turn, where it turns about an edge.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        turn: Option<TurnAbout>,
+        /// Where it ends.
+        to: CellTarget,
+        /// Smallest margin of its transient states; null when unknown.
+        #[serde(default)]
+        margin: Option<Bracket>,
+        /// How far the action is done where that is, 0 to 1; null when unknown.
+        #[serde(default)]
+        #[schemars(range(min = 0, max = 1))]
+        phase: Option<Real>,
+    },
     /// A port rolls over the ball that it holds, by one step, with everything on one side of the connection.
     Roll {
         /// The port and the surface.
@@ -112,6 +134,7 @@ impl Action {
             | Self::Detach { margin, phase, .. }
             | Self::Slide { margin, phase, .. }
             | Self::Pivot { margin, phase, .. }
+            | Self::Move { margin, phase, .. }
             | Self::Roll { margin, phase, .. }
             | Self::Rotate { margin, phase, .. } => (*margin, *phase),
         }
@@ -129,6 +152,16 @@ pub(crate) struct SpotTarget {
     pub(crate) polar_deg: Real,
     /// Angle about the direction outwards.
     pub(crate) spin_deg: Real,
+}
+
+/// A turn about an edge.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct TurnAbout {
+    /// World direction that the turn is right-handed about.
+    pub(crate) axis: Axis,
+    /// 90 or 180.
+    pub(crate) angle_deg: u32,
 }
 
 /// A side of a joint.

@@ -5,6 +5,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::connector::Connector;
+use super::motion::Stencil;
 use super::number::{AngleRange, NonNegative, Positive, Real};
 
 /// Name and version of the format.
@@ -26,6 +27,11 @@ pub(crate) struct Catalogue {
     pub(crate) name: Option<String>,
     /// Connector models by name.
     pub(crate) connectors: IndexMap<String, Connector>,
+    /// Motions of modules with ports `faces` beside `slide` and `pivot`, by name: all ways to make
+    /// each. For every way there must be one that leads back.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    #[schemars(inner(length(min = 1, max = 64)))]
+    pub(crate) motions: IndexMap<String, Vec<Stencil>>,
     /// Module types by name.
     pub(crate) module_types: IndexMap<String, ModuleType>,
 }
@@ -46,12 +52,14 @@ pub(crate) struct ModuleType {
     /// Connector on every face, for ports `faces`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) connector: Option<String>,
-    /// Connector at a shared edge while pivoting: a `box`, z along the edge.
+    /// Connector at a shared edge while turning about it: a `box`, z along the edge.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) hinge: Option<String>,
-    /// What it is capable of.
+    /// What it is capable of: `slide` over the faces of two coplanar neighbours, `pivot` about an edge shared with
+    /// a neighbour, and the catalogue's own `motions`, for ports `faces`; `roll` of a port over a surface and
+    /// `rotate` of a joint for others.
     #[serde(default)]
-    pub(crate) motions: Vec<Motion>,
+    pub(crate) motions: Vec<String>,
     /// Joints between its bodies, which make them one tree.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) joints: Vec<Joint>,
@@ -163,20 +171,6 @@ pub(crate) struct PortType {
     /// Whether connectors can engage anywhere on the body's surface, a ball's.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub(crate) surface: bool,
-}
-
-/// A motion that a module is capable of.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "lowercase")]
-pub(crate) enum Motion {
-    /// Over the faces of two coplanar neighbours.
-    Slide,
-    /// About an edge shared with a neighbour.
-    Pivot,
-    /// Of a port over a surface.
-    Roll,
-    /// Of a joint.
-    Rotate,
 }
 
 /// A revolute joint between two bodies of a module type.

@@ -1,10 +1,15 @@
 //! A catalogue to `catalogue/1`.
 
+use indexmap::IndexMap;
+
 use super::super::read::port_rotation;
 use super::super::wire::{self, AngleRange, NonNegative, Positive, Real};
 use super::connector::connectors;
+use super::lattice_plan::axis;
 use super::{vector, xyzw};
-use crate::robot::{BodyType, Catalogue, JointType, LatticeType, ModuleType, PortPlace, PortType, Shape};
+use crate::robot::{
+    BodyType, Catalogue, JointType, ModuleType, Motion, MotionType, PortPlace, PortType, Shape, Stencil, Turn,
+};
 use crate::spatial::{Rotation, Vec3};
 
 /// By name if it is built in, in full otherwise, so that the file stands on its own.
@@ -22,6 +27,7 @@ pub(super) fn wire(catalogue: &Catalogue) -> wire::Catalogue {
         format: wire::CatalogueFormat::V1,
         name: Some(catalogue.name.clone()),
         connectors: connectors(&catalogue.connectors),
+        motions: motions(&catalogue.motions),
         module_types: types.collect(),
     }
 }
@@ -39,20 +45,46 @@ fn module_type(catalogue: &Catalogue, module_type: &ModuleType) -> wire::ModuleT
         },
         connector: lattice.map(|lattice| connector(lattice.face)),
         hinge: lattice.and_then(|lattice| lattice.hinge).map(connector),
-        motions: motions(module_type, lattice),
+        motions: motions_of(catalogue, module_type),
         joints: module_type.joints.iter().map(|j| joint(bodies, j)).collect(),
         roll_step_deg: module_type.roll_step_degrees.map(Positive),
     }
 }
 
-fn motions(module_type: &ModuleType, lattice: Option<&LatticeType>) -> Vec<wire::Motion> {
-    let motions = [
-        (lattice.is_some_and(|lattice| lattice.slide), wire::Motion::Slide),
-        (lattice.is_some_and(|lattice| lattice.pivot), wire::Motion::Pivot),
-        (module_type.roll_step_degrees.is_some(), wire::Motion::Roll),
-        (module_type.rotates, wire::Motion::Rotate),
-    ];
-    motions.into_iter().filter(|(can, _)| *can).map(|(_, motion)| motion).collect()
+/// The names of what modules of a type are capable of.
+fn motions_of(catalogue: &Catalogue, module_type: &ModuleType) -> Vec<String> {
+    let of_lattice = module_type.lattice.iter().flat_map(|lattice| &lattice.motions);
+    let of_lattice = of_lattice.map(|&motion| catalogue.motions[motion].name.as_str());
+    let roll = module_type.roll_step_degrees.map(|_| "roll");
+    let rotate = module_type.rotates.then_some("rotate");
+    of_lattice.chain(roll).chain(rotate).map(String::from).collect()
+}
+
+/// The motions that are not built in.
+fn motions(motions: &[MotionType]) -> IndexMap<String, Vec<wire::Stencil>> {
+    let own = motions.iter().filter(|motion| MotionType::built_in(&motion.name).is_none());
+    own.map(|motion| (motion.name.clone(), motion.stencils.iter().map(stencil).collect())).collect()
+}
+
+fn stencil(stencil: &Stencil) -> wire::Stencil {
+    let about = match stencil.motion {
+        Motion::Translation { .. } => None,
+        Motion::Rotation { support, towards, turn } => Some(wire::Edge {
+            support: support.step(),
+            towards: axis(towards),
+            angle_deg: match turn {
+                Turn::Quarter => 90,
+                Turn::Half => 180,
+            },
+        }),
+    };
+    wire::Stencil {
+        to: stencil.motion.by(),
+        occupied: stencil.occupied.clone(),
+        free: stencil.free.clone(),
+        about,
+        mirrored: stencil.mirrored,
+    }
 }
 
 fn body(body: &BodyType) -> wire::BodyType {

@@ -1,7 +1,7 @@
 //! The actions of a plan for lattice modules.
 
 use super::super::plan_document::PlanDocument;
-use super::super::turn::Cells;
+use super::super::turn::{AxisAngle, Cells};
 use super::super::wire;
 use super::sequence::{Family, Named, Worth};
 use super::{Unwritable, configuration};
@@ -40,7 +40,7 @@ impl Family for LatticePlans<'_> {
         self.cells = Cells::of(&self.document.problem.start);
     }
 
-    /// A pivot is written with the turn that its file gave, where that is not its own.
+    /// A turn is written as the one that its file gave, where that is not its own.
     fn action(&mut self, index: usize, action: &Action, (margin, phase): Worth) -> Result<wire::Action, Unwritable> {
         let turn = self.cells.take(action);
         let given = self.document.contradictions_of(self.plan).find(|c| c.action == index).map(|c| c.given);
@@ -48,22 +48,23 @@ impl Family for LatticePlans<'_> {
         Ok(match *action {
             Action::Attach(pair) => wire::Action::Attach { ports: ports(self.start(), pair)?, margin, phase },
             Action::Detach(pair) => wire::Action::Detach { ports: ports(self.start(), pair)?, margin, phase },
-            Action::Slide { module, to } => {
-                wire::Action::Slide { module: self.id(module)?, to: target(to), margin, phase }
-            }
-            Action::Pivot { module, support, to } => {
-                let turn = given.or(turn).ok_or_else(|| Unwritable::new("a pivot that no turn makes"))?;
-                wire::Action::Pivot {
-                    module: self.id(module)?,
-                    support: self.id(support)?,
-                    axis: axis(turn.axis),
-                    angle_deg: match turn.turn {
-                        Turn::Quarter => 90,
-                        Turn::Half => 180,
-                    },
-                    to: target(to),
-                    margin,
-                    phase,
+            Action::Move { motion, module, support, to } => {
+                let kinds = &self.start().catalogue.motions;
+                let kind = kinds.get(usize::from(motion)).map(|motion| motion.name.as_str());
+                let motion = kind.ok_or_else(|| Unwritable::new("a motion beyond the catalogue's"))?;
+                let (module, to) = (self.id(module)?, target(to));
+                let support = support.map(|support| self.id(support)).transpose()?;
+                let turned = || given.or(turn).ok_or_else(|| Unwritable::new("a turn that no axis makes"));
+                match (motion, support) {
+                    ("slide", None) => wire::Action::Slide { module, to, margin, phase },
+                    ("pivot", Some(support)) => {
+                        let wire::TurnAbout { axis, angle_deg } = about(turned()?);
+                        wire::Action::Pivot { module, support, axis, angle_deg, to, margin, phase }
+                    }
+                    (motion, support) => {
+                        let turn = support.is_some().then(turned).transpose()?.map(about);
+                        wire::Action::Move { motion: motion.into(), module, support, turn, to, margin, phase }
+                    }
                 }
             }
         })
@@ -86,7 +87,16 @@ fn ports(configuration: &Configuration, connection: FaceConnection) -> Result<[S
     Ok(connection.ports.map(|port| configuration::port(configuration, port)))
 }
 
-fn axis(face: Face) -> wire::Axis {
+fn about(turn: AxisAngle) -> wire::TurnAbout {
+    let angle_deg = match turn.turn {
+        Turn::Quarter => 90,
+        Turn::Half => 180,
+    };
+    wire::TurnAbout { axis: axis(turn.axis), angle_deg }
+}
+
+/// A direction as files say it.
+pub(super) fn axis(face: Face) -> wire::Axis {
     match face {
         Face::NegX => wire::Axis::NegX,
         Face::PosX => wire::Axis::PosX,

@@ -22,11 +22,11 @@ mod ways;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
-use planners::{Limit, Pass, Progress};
+use planners::Limit;
 
 use super::domain::Domain;
 use super::hanging::Rests;
-use super::options::{Event, Options};
+use super::options::{Event, Known, News, Options, Pass};
 use super::plan::{Outcome, Plan, Proof, Report, Statistics};
 use crate::statics::Bracket;
 use builder::{Attempt, Builder};
@@ -66,6 +66,7 @@ pub fn decompose(
     };
     // Every module that is not where the goal wants one moves at least once. In a free frame others might stay.
     let fewest = if problem.goal().is_free() { 0 } else { shape::surplus(problem.start_layout(), &targets).len() };
+    let fewest = u32::try_from(fewest).unwrap_or(u32::MAX);
     let mut plan: Option<Plan> = None;
     let mut stopped = None;
     let mut statistics = Statistics::default();
@@ -79,20 +80,20 @@ pub fn decompose(
             let mut watch = |left: usize| {
                 statistics.expanded += 1;
                 statistics.states = statistics.states.max((targets.len() - left) as u64);
-                let spent = planners::Statistics {
-                    expanded: statistics.expanded,
-                    states: left,
-                    ..planners::Statistics::default()
+                let known = Known {
+                    pass: Pass::Greedy,
+                    margin: plan.as_ref().and_then(|plan| plan.margin).map(|margin| margin.lower),
+                    moves: plan.as_ref().map(|plan| plan.moves),
+                    margin_at_most: ends.at_most(),
+                    moves_at_least: fewest,
+                    statistics: planners::Statistics {
+                        expanded: statistics.expanded,
+                        states: left,
+                        ..planners::Statistics::default()
+                    },
+                    oracle_solves: domain.oracle.solves(),
                 };
-                let progress = Progress {
-                    pass: Pass::Shortest,
-                    statistics: spent,
-                    best_width: plan.as_ref().and_then(|plan| plan.margin).map(|margin| margin.lower),
-                    width_at_most: ends.at_most(),
-                    best_cost: plan.as_ref().map(|plan| plan.moves),
-                    cost_at_least: u32::try_from(fewest).unwrap_or(u32::MAX),
-                };
-                on_event(&Event { progress, oracle_solves: domain.oracle.solves() });
+                on_event(&Event { news: News::Progress, known });
                 stopped = stopped_by();
                 stopped.is_none()
             };
@@ -111,7 +112,6 @@ pub fn decompose(
                 break;
             }
         }
-        eprintln!(plan.as_ref().map(|p| p.moves), statistics.expanded, rests.solves());
         levels.note(is_attained);
         if stopped.is_some() {
             break;

@@ -44,7 +44,12 @@ pub(super) fn arm(torque: f64) -> Linkage {
         lattice: None,
     };
     Linkage {
-        catalogue: Arc::new(Catalogue { name: "test".into(), connectors: Vec::new(), module_types: vec![module_type] }),
+        catalogue: Arc::new(Catalogue {
+            name: "test".into(),
+            connectors: Vec::new(),
+            motions: Vec::new(),
+            module_types: vec![module_type],
+        }),
         gravity: Vec3::new(0.0, 0.0, -GRAVITY),
         environment: Environment::default(),
         modules: vec![Module { id: "a".into(), module_type: 0, pose: Pose::identity(), joints: vec![0], fixed: true }],
@@ -194,7 +199,7 @@ fn rod() -> Catalogue {
         roll_step_degrees: None,
         lattice: None,
     };
-    Catalogue { name: "rods".into(), connectors: vec![latch], module_types: vec![module_type] }
+    Catalogue { name: "rods".into(), connectors: vec![latch], motions: Vec::new(), module_types: vec![module_type] }
 }
 
 #[test]

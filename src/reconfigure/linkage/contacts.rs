@@ -30,6 +30,13 @@ impl<'a> Contacts<'a> {
         Self { problem, known: Mutex::new(HashMap::new()) }
     }
 
+    /// Approximate memory of what is known, in bytes.
+    pub fn memory_bytes(&self) -> usize {
+        let known = self.known.lock().expect("no thread panics while it holds what is known");
+        // A meeting of one pair of ports, with the counts of its `Arc`, is an allocation of its own.
+        known.capacity() * (size_of::<([PlaceId; 2], Meeting)>() + 1) * 8 / 7 + known.len() * 48
+    }
+
     /// The robot of an arrangement with every possible connection engaged.
     pub fn saturated(&self, arrangement: &Arrangement, modules: Vec<Arc<Place>>) -> View {
         let mut known = self.known.lock().expect("no thread panics while it holds what is known");

@@ -16,7 +16,7 @@ use super::contacts::Contacts;
 use super::goal::GoalTest;
 use super::moves::{Rules, Step, View};
 use super::oracle::Oracle;
-use super::places::Place;
+use super::places::{Place, PlaceId};
 use super::problem::{Described, Problem};
 
 /// How many robots are kept with their moves.
@@ -67,6 +67,14 @@ impl<'a> Domain<'a> {
             recent: Mutex::new(VecDeque::new()),
             at_rest: Mutex::new(HashMap::new()),
         }
+    }
+
+    /// Approximate memory of all answers that are kept, in bytes.
+    pub fn memory_bytes(&self) -> usize {
+        let at_rest = self.at_rest.lock().expect("no thread panics while it holds the margins");
+        let numbers = self.problem.start.modules.len() * size_of::<PlaceId>();
+        let known = at_rest.capacity() * (size_of::<(Arrangement, Bracket)>() + 1) * 8 / 7 + at_rest.len() * numbers;
+        known + self.contacts.memory_bytes()
     }
 
     /// What may move.

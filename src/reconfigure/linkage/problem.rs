@@ -6,7 +6,7 @@
 use std::sync::Arc;
 
 use crate::reconfigure::refusal::{Impossible, Refusal, Rejection};
-use crate::robot::linkage::{Goal, Linkage, Symmetry};
+use crate::robot::linkage::{Directions, Goal, Linkage, MEETING, Module, Symmetry, is_square};
 use crate::robot::{ModuleLoad, ModuleType};
 use crate::spatial::{Pose, Vec3};
 
@@ -23,11 +23,14 @@ pub struct Class {
     pub kind: Arc<ModuleType>,
     /// Whether its modules are held immovably.
     pub fixed: bool,
+    /// Whether no action may move its modules or their joints.
+    pub stays: bool,
     /// The loads on each of its modules; their module index is always 0.
     pub loads: Vec<ModuleLoad>,
     /// The one module of the class, where modules are labelled.
     pub label: Option<String>,
-    /// The ways to describe its modules: of loaded or fixed ones only as they are.
+    /// The ways to describe its modules: of loaded ones those that leave the points of action where they are, of
+    /// fixed ones only as they are.
     pub symmetries: Vec<Symmetry>,
     /// How far its ports and solids reach from the origin, in m, whatever its joints.
     pub reach: f64,
@@ -74,7 +77,7 @@ impl Problem {
         super::refusal::check(start, goal)?;
         let frame = frame(start, goal)?;
         let (start, wanted_linkage) = (normal(start), normal(&goal.linkage));
-        let (classes, class_of) = classes(&start, goal.matching.labelled);
+        let (classes, class_of) = classes(&start, goal.matching.labelled, is_square(&[&start, &wanted_linkage]));
         let wanted = goal_classes(&start, &class_of, &classes, &wanted_linkage, goal.matching.labelled)?;
         let mut slots: Vec<usize> = (0..start.modules.len()).collect();
         slots.sort_by_key(|&module| class_of[module]);
@@ -114,16 +117,19 @@ fn normal(linkage: &Linkage) -> Linkage {
 fn frame(start: &Linkage, goal: &Goal) -> Result<Frame, Refusal> {
     let is_held = start.modules.iter().any(|module| module.fixed);
     let is_loaded = !start.loads.is_empty();
+    let is_unrestricted = start.require.stay.is_empty() && start.require.keep_out.is_empty();
     let has_ground = start.environment.ground.is_some();
     let is_empty = start.environment.obstacles.is_empty() && !has_ground;
     if !goal.matching.free_frame {
         return Ok(Frame::World);
     }
-    if is_empty && !is_held && !is_loaded && start.gravity == Vec3::zeros() {
+    if is_empty && is_unrestricted && !is_held && !is_loaded && start.gravity == Vec3::zeros() {
         return Ok(Frame::Free);
     }
     let because = match () {
         () if is_held => "a module is fixed",
+        () if !start.require.stay.is_empty() => "a module may not move",
+        () if !start.require.keep_out.is_empty() => "there are forbidden regions",
         () if !start.environment.obstacles.is_empty() => "there are obstacles",
         () if start.gravity.x != 0.0 || start.gravity.y != 0.0 => "gravity is not vertical",
         () if is_loaded => "a module is loaded",
@@ -132,35 +138,52 @@ fn frame(start: &Linkage, goal: &Goal) -> Result<Frame, Refusal> {
     Err(Refusal::NoFreeFrame { because })
 }
 
-/// The classes of the start's modules, in order of first appearance.
-fn classes(start: &Linkage, labelled: bool) -> (Vec<Class>, Vec<usize>) {
+/// The classes of the start's modules, in order of first appearance. `square` says that everything is turned by
+/// quarters and stays so.
+fn classes(start: &Linkage, labelled: bool, square: bool) -> (Vec<Class>, Vec<usize>) {
     let mut steps: Vec<f64> = Vec::new();
     for module in 0..start.modules.len() {
         steps.extend(start.module_type(module).roll_step_degrees.filter(|step| !steps.contains(step)));
     }
+    let directions = if square { Directions::Axes } else { Directions::Steps(&steps) };
     let mut classes: Vec<Class> = Vec::new();
     let mut class_of = Vec::with_capacity(start.modules.len());
     for (index, module) in start.modules.iter().enumerate() {
         let own = start.loads.iter().filter(|load| load.module == index);
         let loads: Vec<ModuleLoad> = own.map(|load| ModuleLoad { module: 0, ..load.clone() }).collect();
         let label = labelled.then(|| module.id.clone());
+        let stays = start.require.stay.contains(&index);
         let is_same = |class: &Class| {
             class.module_type == module.module_type
                 && class.fixed == module.fixed
+                && class.stays == stays
                 && class.loads == loads
                 && class.label == label
         };
         let position = classes.iter().position(is_same).unwrap_or_else(|| {
             let kind = start.module_type(index).clone();
-            let mut symmetries = start.catalogue.symmetries(module.module_type, &steps);
-            if module.fixed || !loads.is_empty() {
+            let mut symmetries = start.catalogue.symmetries(module.module_type, directions);
+            if module.fixed || stays {
                 symmetries.truncate(1);
             }
+            let points = || loads.iter().map(|load| load.at.unwrap_or(kind.body().com));
+            let tolerance = MEETING * kind.size();
+            symmetries.retain(|symmetry| points().all(|point| symmetry.keeps_point(&point, tolerance)));
             let beyond = (0..kind.joints.len()).map(|joint| beyond(&kind, joint)).collect();
             let kind = Arc::new(kind);
             let module_type = module.module_type;
             let reach = reach(&kind);
-            classes.push(Class { module_type, kind, fixed: module.fixed, loads, label, symmetries, reach, beyond });
+            classes.push(Class {
+                module_type,
+                kind,
+                fixed: module.fixed,
+                stays,
+                loads,
+                label,
+                symmetries,
+                reach,
+                beyond,
+            });
             classes.len() - 1
         });
         class_of.push(position);
@@ -211,10 +234,14 @@ fn goal_classes(
         let namesake = namesake.filter(|&index| start.modules[index].module_type == module.module_type);
         let is_own = |&index: &usize| {
             let class = &classes[class_of[index]];
-            labelled || class.fixed || !class.loads.is_empty()
+            labelled || class.fixed || class.stays || !class.loads.is_empty()
         };
         let plain = |class: &Class| {
-            class.module_type == module.module_type && !class.fixed && class.loads.is_empty() && class.label.is_none()
+            class.module_type == module.module_type
+                && !class.fixed
+                && !class.stays
+                && class.loads.is_empty()
+                && class.label.is_none()
         };
         let class = match namesake.filter(is_own) {
             Some(index) => Some(class_of[index]),
@@ -225,17 +252,19 @@ fn goal_classes(
     for (index, module) in start.modules.iter().enumerate() {
         let count = |classes: &[usize]| classes.iter().filter(|&&class| class == class_of[index]).count();
         if count(class_of) != count(&wanted) {
-            if module.fixed {
+            if module.fixed || start.require.stay.contains(&index) {
                 return Err(Impossible::FixedModule { module: module.id.clone() }.into());
             }
             return Err(differ(start, goal, module.module_type));
         }
     }
-    let held = start.modules.iter().filter(|module| module.fixed);
-    for module in held {
+    let held = start.modules.iter().enumerate();
+    let held = held.filter(|(index, module)| module.fixed || start.require.stay.contains(index));
+    for (index, module) in held {
         let there = goal.modules.iter().find(|other| other.id == module.id);
         let size = classes.iter().map(|class| class.kind.size()).fold(0.0, f64::max);
-        let stays = there.is_some_and(|there| is_near(&module.pose, &there.pose, size));
+        let keeps_joints = |there: &Module| !start.require.stay.contains(&index) || there.joints == module.joints;
+        let stays = there.is_some_and(|there| is_near(&module.pose, &there.pose, size) && keeps_joints(there));
         if !stays {
             return Err(Impossible::FixedModule { module: module.id.clone() }.into());
         }

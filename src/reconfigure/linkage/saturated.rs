@@ -159,6 +159,10 @@ impl Space for Saturated<'_> {
     fn heap_bytes(&self, state: &State) -> usize {
         size_of_val(&*state.arrangement.0)
     }
+
+    fn memory_bytes(&self) -> usize {
+        self.domain.memory_bytes()
+    }
 }
 
 impl Reversible for Saturated<'_> {

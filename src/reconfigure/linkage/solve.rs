@@ -22,8 +22,9 @@ use super::saturated::{self, Saturated};
 /// Plans how to get from `start` to `goal`, like [`solve`](crate::reconfigure::solve()) does for lattices: with the same
 /// guarantees, by moves that turn one side of a joint or of a connection on a ball.
 ///
-/// What is proved is about the goal as it is told apart here: balls turned as it says, but for turns that keep their grid of
-/// directions, and loaded or fixed modules described as it describes them, not by their symmetries. The
+/// What is proved is about the goal as it is told apart here: up to the symmetries of modules, of loaded ones those that keep
+/// the loads' points, and up to those turns of balls that keep their grid of directions, which are all 24 of a cube where
+/// everything is turned by quarters. Other turns of a ball count, and fixed modules as they are described. The
 /// [`replay`](super::replay::replay) takes a goal as met wherever masses and ports are alike, which may take fewer moves.
 ///
 /// # Errors
@@ -32,7 +33,7 @@ pub fn solve(
     start: &Linkage,
     goal: &Goal,
     options: &Options,
-    on_event: &mut dyn FnMut(&Event),
+    on_event: &mut dyn FnMut(&Event<Action, Held>),
 ) -> Result<Report<Action, Held>, Refusal> {
     let began = Instant::now();
     let required = options.min_margin.map_or(start.require.margin, |least| least.max(start.require.margin));
@@ -53,7 +54,7 @@ pub fn solve(
         Some(reason) => Report::impossible(options.objective, required, reason),
         None => {
             let space = Saturated::new(&domain, ends.width(), ends.at_most());
-            task.run_with(&space, &Plans(&domain), |search, floor| search.from_both_ends(floor), on_event)
+            task.run_with(&space, &Plans(&domain), &|search, floor| search.from_both_ends(floor), on_event)
         }
     };
     if let Some(fault) = domain.oracle.fault() {

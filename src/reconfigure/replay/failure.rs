@@ -28,6 +28,13 @@ pub enum Fault<T = Touched> {
     UnknownModule,
     /// A fixed module would have to move.
     FixedModule,
+    /// A module that is not allowed to would have to move.
+    MustStay,
+    /// A module passes through a region where none may be.
+    KeepOut {
+        /// Index of the region in the start's requirement.
+        region: usize,
+    },
     /// The two faces or ports to connect do not meet.
     FacesApart,
     /// The connection to engage is engaged already.
@@ -40,6 +47,8 @@ pub enum Fault<T = Touched> {
     NoSuchMotion,
     /// A module that the motion needs is missing: a coplanar neighbour, a support, or a landing.
     NoSupport,
+    /// A cell that the motion needs empty is not.
+    NotFree,
     /// The module is not connected where the motion starts from.
     NotHeld,
     /// A connection that the motion cannot keep is engaged.
@@ -91,6 +100,8 @@ impl<T: fmt::Display> fmt::Display for Fault<T> {
         match self {
             Self::UnknownModule => f.write_str("no such module"),
             Self::FixedModule => f.write_str("a fixed module cannot move"),
+            Self::MustStay => f.write_str("the module is not allowed to move"),
+            Self::KeepOut { region } => write!(f, "it passes through forbidden region number {region}"),
             Self::FacesApart => f.write_str("the two ports do not meet"),
             Self::NotABridge => f.write_str("what moves is held by more than the joint or connection that it turns at"),
             Self::BeyondRange => f.write_str("the joint's range ends before this position"),
@@ -99,6 +110,7 @@ impl<T: fmt::Display> fmt::Display for Fault<T> {
             Self::Unable => f.write_str("the module cannot make this motion"),
             Self::NoSuchMotion => f.write_str("no single motion leads there from where the module is"),
             Self::NoSupport => f.write_str("a module that the motion needs as support or landing is missing"),
+            Self::NotFree => f.write_str("a module is in a cell that the motion needs empty"),
             Self::NotHeld => f.write_str("the module is not connected to the support of its motion"),
             Self::NotReleased => f.write_str("a connection that the motion cannot keep is engaged"),
             Self::Collision { with } => write!(f, "it collides with {with}"),

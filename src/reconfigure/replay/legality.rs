@@ -5,7 +5,9 @@ use nalgebra::{Matrix3, Rotation3, Unit};
 use crate::geometry::Motion;
 use crate::reconfigure::action::Action;
 use crate::reconfigure::assembly::Engagement;
-use crate::robot::{Cell, Configuration, Face, FaceConnection, Module, Orientation, Placement, Port};
+use crate::robot::{
+    self, Cell, Configuration, Face, FaceConnection, Module, Orientation, Placement, Port, Stencil, Turn,
+};
 use crate::spatial::{Pose, Rotation, Vec3};
 
 use super::failure::Fault;
@@ -28,10 +30,10 @@ pub struct Path {
     pub steps: u32,
 }
 
-/// Steps in which a slide is checked: every 1/32.
-const SLIDE_STEPS: u32 = 32;
+/// Steps in which a translation by one cell is checked: every 1/32.
+const CELL_STEPS: u32 = 32;
 
-/// Steps in which 90 degrees of a pivot are checked: every 3 degrees.
+/// Steps in which 90 degrees of a rotation are checked: every 3 degrees.
 const QUARTER_STEPS: u32 = 30;
 
 /// Where an action leads from a state.
@@ -47,13 +49,16 @@ pub fn transition(before: &Configuration, action: &Action) -> Result<Transition,
             known(&connection.modules())?;
             detach(before, *connection)
         }
-        Action::Slide { module, to } => {
+        Action::Move { motion, module, support, to } => {
             known(&[*module])?;
-            slide(before, *module, *to)
-        }
-        Action::Pivot { module, support, to } => {
-            known(&[*module, *support])?;
-            pivot(before, *module, *support, *to)
+            known(support.as_slice())?;
+            let (stencil, mover) = stencil(before, usize::from(*motion), *module, *support, *to)?;
+            match (stencil.motion, *support) {
+                (robot::Motion::Rotation { support: side, towards, turn }, Some(support)) => {
+                    turned(before, *module, mover, support, [side.opposite(), towards], turn)
+                }
+                _ => translated(before, &stencil, *module, mover, *to),
+            }
         }
     }
 }
@@ -80,66 +85,106 @@ fn detach(before: &Configuration, connection: FaceConnection) -> Result<Transiti
     Ok(Transition { after, path: None })
 }
 
-fn slide(before: &Configuration, module: usize, to: Cell) -> Result<Transition, Fault> {
-    let mover = free_module(before, module)?;
-    if !before.module_type(module).cell().slide {
+/// The stencil, turned as it must be, that makes the motion from where the module is to a cell, with the support
+/// that it turns about if it turns; and the module's placement.
+fn stencil(
+    before: &Configuration,
+    motion: usize,
+    module: usize,
+    support: Option<usize>,
+    to: Cell,
+) -> Result<(Stencil, Placement), Fault> {
+    let from = free_module(before, module)?.placement;
+    let types = |support: usize| [module, support].map(|m| before.modules[m].module_type);
+    let hinged = |support: usize| before.catalogue.hinge(types(support)[0], types(support)[1]).is_some();
+    let kind = before.catalogue.motions.get(motion).ok_or(Fault::Unable)?;
+    if !before.module_type(module).cell().motions.contains(&motion) || !support.is_none_or(hinged) {
         return Err(Fault::Unable);
     }
-    let from = mover.placement.cell;
-    let travel = step(from, to).ok_or(Fault::NoSuchMotion)?;
-    let sides = || Face::ALL.into_iter().filter(|side| side.axis() != travel.axis());
+    let offset = |cell: Cell| -> Option<Cell> {
+        let apart = |i: usize| cell[i].checked_sub(from.cell[i]);
+        Some([apart(0)?, apart(1)?, apart(2)?])
+    };
+    let (by, base) = (offset(to), support.map(|support| offset(before.modules[support].placement.cell)));
+    let is_it = |stencil: &Stencil| match stencil.motion {
+        robot::Motion::Translation { by: leads } => base.is_none() && by == Some(leads),
+        robot::Motion::Rotation { support, .. } => {
+            base == Some(Some(support.step())) && by == Some(stencil.motion.by())
+        }
+    };
+    let leading: Vec<Stencil> = kind.stencils.iter().flat_map(Stencil::variants).filter(is_it).collect();
+    if leading.is_empty() {
+        return Err(Fault::NoSuchMotion);
+    }
+    let is_filled = |offset: &Cell| {
+        let cell: Cell = std::array::from_fn(|i| from.cell[i] + offset[i]);
+        before.modules.iter().any(|module| module.placement.cell == cell)
+    };
+    let mut supported = leading.into_iter().filter(|stencil| stencil.occupied.iter().all(is_filled)).peekable();
+    supported.peek().ok_or(Fault::NoSupport)?;
+    let mut roomy = supported.filter(|stencil| !stencil.free.iter().any(is_filled)).peekable();
+    roomy.peek().ok_or(Fault::NotFree)?;
+    let own = own_connections(before, module);
+    let may_keep = |stencil: &Stencil, side: Face| match stencil.motion {
+        robot::Motion::Translation { by } => by[side.axis()] == 0,
+        robot::Motion::Rotation { support, .. } => side == support,
+    };
+    let mut released = roomy.filter(|stencil| own.iter().all(|&(side, _)| may_keep(stencil, side))).peekable();
+    released.peek().ok_or(Fault::NotReleased)?;
+    let mut held = released.filter(|stencil| own.iter().any(|(side, _)| stencil.occupied.contains(&side.step())));
+    Ok((held.next().ok_or(Fault::NotHeld)?, from))
+}
+
+/// Straight on, held by whatever the module slides along.
+fn translated(
+    before: &Configuration,
+    stencil: &Stencil,
+    module: usize,
+    from: Placement,
+    to: Cell,
+) -> Result<Transition, Fault> {
+    let travel = stencil.motion.by();
+    let sides = || Face::ALL.into_iter().filter(|side| travel[side.axis()] == 0);
     let beside = |cell, side| beyond(before, cell, side);
 
-    let own = own_connections(before, module);
-    if own.iter().any(|(side, _)| side.axis() == travel.axis()) {
-        return Err(Fault::NotReleased);
-    }
-    let coplanar = |side: &Face| beside(from, *side).is_some() && beside(to, *side).is_some();
-    if !sides().any(|side| coplanar(&side)) {
-        return Err(Fault::NoSupport);
-    }
-    if !sides().filter(coplanar).any(|side| own.iter().any(|(engaged, _)| *engaged == side)) {
-        return Err(Fault::NotHeld);
-    }
-
     let mut engaged = others(before, module);
-    for cell in [from, to] {
-        let held = sides().filter_map(|side| Some(face(module, side, beside(cell, side)?)));
-        engaged.extend(held);
+    let [xs, ys, zs] = [0, 1, 2].map(|i| from.cell[i].min(to[i])..=from.cell[i].max(to[i]));
+    for cell in xs.flat_map(|x| ys.clone().map(move |y| [x, y])) {
+        for z in zs.clone() {
+            let cell = [cell[0], cell[1], z];
+            engaged.extend(sides().filter_map(|side| Some(face(module, side, beside(cell, side)?))));
+        }
     }
-    let by = (Placement::new(to).centre(1.0) - Placement::new(from).centre(1.0)) * before.pitch();
+    let by = (Placement::new(to).centre(1.0) - Placement::new(from.cell).centre(1.0)) * before.pitch();
     let landing = sides().filter_map(|side| Some((side, beside(to, side)?))).collect::<Vec<_>>();
-    let after = landed(before, module, to, mover.placement.orientation, &landing);
-    let path = Path { module, motion: Motion::Translation { by }, engaged, steps: SLIDE_STEPS };
+    let after = landed(before, module, to, from.orientation, &landing);
+    let steps = CELL_STEPS * stencil.motion.stages();
+    let path = Path { module, motion: Motion::Translation { by }, engaged, steps };
     Ok(Transition { after, path: Some(path) })
 }
 
-fn pivot(before: &Configuration, module: usize, support: usize, to: Cell) -> Result<Transition, Fault> {
-    let mover = free_module(before, module)?;
-    let types = [module, support].map(|m| before.modules[m].module_type);
-    if !before.module_type(module).cell().pivot || before.catalogue.hinge(types[0], types[1]).is_none() {
-        return Err(Fault::Unable);
-    }
-    let (from, base) = (mover.placement.cell, before.modules[support].placement.cell);
-    let up = step(base, from).ok_or(Fault::NoSupport)?;
-    let quarter = step(from, to).filter(|travel| travel.axis() != up.axis());
-    let half = step(base, to).filter(|travel| travel.axis() != up.axis());
-    let (travel, turns, landing_on) = match (quarter, half) {
-        (Some(travel), _) => (travel, 1, beyond(before, base, travel).ok_or(Fault::NoSupport)?),
-        (None, Some(travel)) => (travel, 2, support),
-        (None, None) => return Err(Fault::NoSuchMotion),
+/// About the edge of its support between the faces `up`, towards the module, and `travel`.
+fn turned(
+    before: &Configuration,
+    module: usize,
+    from: Placement,
+    support: usize,
+    [up, travel]: [Face; 2],
+    turn: Turn,
+) -> Result<Transition, Fault> {
+    let base = before.modules[support].placement.cell;
+    let (turns, to, landing_side) = match turn {
+        Turn::Quarter => (1, crate::robot::neighbour(from.cell, travel), up.opposite()),
+        Turn::Half => (2, crate::robot::neighbour(base, travel), travel.opposite()),
     };
-    match own_connections(before, module)[..] {
-        [(side, other)] if side == up.opposite() && other == support => {}
-        [] => return Err(Fault::NotHeld),
-        _ => return Err(Fault::NotReleased),
-    }
+    let to = to.ok_or(Fault::NoSuchMotion)?;
+    let landing_on = beyond(before, to, landing_side).ok_or(Fault::NoSupport)?;
 
     let pitch = before.pitch();
     let edge = Placement::new(base).centre(pitch) + (up.normal() + travel.normal()) * (pitch / 2.0);
     let axis = Unit::new_normalize(up.normal().cross(&travel.normal()));
     let turn = Face::ALL.into_iter().find(|f| f.normal().dot(&axis) > 0.5).expect("an axis along a face normal");
-    let orientation = (0..turns).fold(mover.placement.orientation, |o, _| o.turned(Orientation::quarter_turn(turn)));
+    let orientation = (0..turns).fold(from.orientation, |o, _| o.turned(Orientation::quarter_turn(turn)));
 
     let mut engaged = others(before, module);
     // z along the edge, x along the world axis after it.
@@ -148,8 +193,7 @@ fn pivot(before: &Configuration, module: usize, support: usize, to: Cell) -> Res
     let frame = Pose::from_parts(edge.into(), Rotation::from_rotation_matrix(&upright));
     engaged.push(Engagement::Hinge { parent: support, child: module, frame });
 
-    let landing = [(if turns == 1 { up.opposite() } else { travel.opposite() }, landing_on)];
-    let after = landed(before, module, to, orientation, &landing);
+    let after = landed(before, module, to, orientation, &[(landing_side, landing_on)]);
     let angle = f64::from(turns) * std::f64::consts::FRAC_PI_2;
     let motion = Motion::Rotation { centre: edge, axis, angle };
     let path = Path { module, motion, engaged, steps: turns * QUARTER_STEPS };
@@ -158,13 +202,11 @@ fn pivot(before: &Configuration, module: usize, support: usize, to: Cell) -> Res
 
 fn free_module(before: &Configuration, module: usize) -> Result<&Module, Fault> {
     let mover = &before.modules[module];
-    if mover.fixed { Err(Fault::FixedModule) } else { Ok(mover) }
-}
-
-/// The face whose normal leads from one cell to the other, if they are neighbours.
-fn step(from: Cell, to: Cell) -> Option<Face> {
-    let apart = |i: usize| to[i].checked_sub(from[i]);
-    Face::from_step([apart(0)?, apart(1)?, apart(2)?])
+    match mover.fixed {
+        true => Err(Fault::FixedModule),
+        false if before.require.stay.contains(&module) => Err(Fault::MustStay),
+        false => Ok(mover),
+    }
 }
 
 /// The module beyond a face of a cell.

@@ -3,7 +3,7 @@
 use petgraph::unionfind::UnionFind;
 use rayon::prelude::*;
 
-use crate::geometry::{Solid, Surroundings, first_collision};
+use crate::geometry::{Solid, Surrounding, Surroundings, first_collision};
 use crate::reconfigure::assembly::{Assembler, Engagement, Moving, Touched, Transient};
 use crate::reconfigure::refusal::Refusal;
 use crate::robot::{Configuration, FaceConnection, Placement, Port};
@@ -19,6 +19,7 @@ use super::legality::Path;
 pub(super) struct Checker<'a> {
     assembler: &'a Assembler<'a>,
     surroundings: Surroundings,
+    off_limits: Surroundings,
     pub bounds: Bounds<'a>,
     pub judge: Judge<FaceConnection, Touched>,
 }
@@ -26,12 +27,9 @@ pub(super) struct Checker<'a> {
 impl<'a> Checker<'a> {
     pub fn new(start: &'a Configuration, assembler: &'a Assembler<'a>, required: f64) -> Self {
         let surroundings = Surroundings::new(&start.environment);
-        Self {
-            assembler,
-            surroundings,
-            bounds: Bounds::new(start),
-            judge: Judge::new(required, start.require.connected),
-        }
+        let off_limits = Surroundings::new(&start.require.off_limits());
+        let judge = Judge::new(required, start.require.connected);
+        Self { assembler, surroundings, off_limits, bounds: Bounds::new(start), judge }
     }
 
     /// Checks a state at rest: whether it has a margin, by bounds with one of two modules hanging on the others, where
@@ -92,6 +90,9 @@ impl<'a> Checker<'a> {
         let first = modules.chain(around).min_by(|(a, _), (b, _)| a.total_cmp(b));
         if let Some((phase, with)) = first {
             self.judge.fail(Some(action), Some(phase), Fault::Collision { with }, None);
+        }
+        if let Some((phase, Surrounding::Obstacle(region))) = self.off_limits.first_collision(&moving, &path.motion) {
+            self.judge.fail(Some(action), Some(phase), Fault::KeepOut { region }, None);
         }
     }
 

@@ -2,9 +2,9 @@
 
 use std::collections::{HashMap, VecDeque};
 
-use super::super::heuristic::{Targets, fewest_moves};
+use super::super::heuristic::{Reach, Targets};
 use super::super::layout::Layout;
-use super::{layout_of, moves_of};
+use super::{cube, layout_of, moves_of};
 
 /// Fewest moves from `goal` to every layout within `radius` moves, whatever is engaged and
 /// however it falls: every move leads back, so also to it.
@@ -35,7 +35,7 @@ fn the_bound_never_exceeds_the_distance_and_is_consistent() {
         &[[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]],
     ] {
         let goal = layout_of(filled);
-        let targets = Targets::new(&goal, vec![false]);
+        let targets = Targets::new(&goal, vec![Reach::of(&cube())]);
         let known = distances(&goal, 5);
         assert!(known.len() > 100, "the moves lead somewhere");
         let mut tight = 0;
@@ -57,15 +57,16 @@ fn one_move_covers_one_step_or_a_diagonal() {
     for (to, least) in
         [([0, 0, 0], 0), ([1, 0, 0], 1), ([1, -1, 0], 1), ([1, 1, 1], 2), ([3, 0, 0], 3), ([2, 2, -1], 3)]
     {
-        assert_eq!(fewest_moves([0; 3], to), least, "to {to:?}");
+        assert_eq!(Reach::of(&cube()).fewest_moves([0; 3], to), Some(least), "to {to:?}");
     }
 }
 
 #[test]
 fn other_numbers_of_modules_and_misplaced_fixed_ones_are_out_of_reach() {
+    let (free, held) = (Reach::of(&cube()), Reach::of(&cube().held()));
     let (short, long) = (layout_of(&[[0, 0, 0]]), layout_of(&[[0, 0, 0], [1, 0, 0]]));
-    assert_eq!(Targets::new(&long, vec![false]).fewest_moves(&short, [0; 3]), None);
+    assert_eq!(Targets::new(&long, vec![free]).fewest_moves(&short, [0; 3]), None);
     let elsewhere = layout_of(&[[1, 0, 0]]);
-    assert_eq!(Targets::new(&elsewhere, vec![true]).fewest_moves(&short, [0; 3]), None);
-    assert_eq!(Targets::new(&elsewhere, vec![false]).fewest_moves(&short, [0; 3]), Some(1));
+    assert_eq!(Targets::new(&elsewhere, vec![held]).fewest_moves(&short, [0; 3]), None);
+    assert_eq!(Targets::new(&elsewhere, vec![free]).fewest_moves(&short, [0; 3]), Some(1));
 }

@@ -5,6 +5,8 @@ mod heuristics;
 mod motions;
 mod outcomes;
 mod reports;
+mod restrictions;
+mod stencils;
 mod tampering;
 
 use std::sync::Arc;
@@ -17,15 +19,18 @@ use crate::robot::{
 use crate::spatial::Vec3;
 
 use super::layout::Layout;
-use super::moves::{Ability, Move, fitting};
+use super::moves::Move;
 use super::options::Options;
 use super::plan::{Outcome, Plan, Report};
 use super::problem::cells;
 use super::replay::replay;
 use super::solve::solve;
+use super::ways::{Ability, fitting};
 
 /// Everything that a free cube of the catalogue can do.
-pub const CUBE: Ability = Ability { slide: true, pivot: true, hinge: true };
+pub fn cube() -> Ability {
+    Ability::new(&Catalogue::cube(), 0)
+}
 
 /// Cubes named `a`, `b`, ... in these cells on the ground, all touching faces
 /// connected; the first `fixed` ones held.
@@ -76,7 +81,8 @@ pub fn polycube(most: usize) -> impl Strategy<Value = Vec<Cell>> {
 
 /// The moves of free cubes, by their layout alone.
 pub fn moves_of(layout: &Layout) -> Vec<Move> {
-    fitting(layout, |_| CUBE)
+    let cube = cube();
+    fitting(layout, |_| &cube)
 }
 
 /// The layout of cubes in these cells.

@@ -5,25 +5,20 @@ use std::collections::BTreeSet;
 use proptest::prelude::*;
 
 use crate::geometry::{Solid, first_collision};
-use crate::robot::{Cell, Face, Orientation, Placement};
+use crate::robot::{Cell, Configuration, Face, Motion, Orientation, Placement, Turn};
 
 use super::super::action::Action;
 use super::super::course::motion;
-use super::super::layout::neighbour;
-use super::super::moves::{Motion, Move, Turn, perpendicular};
+use super::super::layout::{displaced, neighbour};
+use super::super::moves::Move;
 use super::super::problem::{bonds, cells};
 use super::super::replay::legality::transition;
 use super::super::step::Step;
-use super::{cubes, moves_of, polycube};
+use super::{cube, cubes, moves_of, polycube};
 
 /// All moves of the cube in one cell, whether they fit or not.
 fn all_moves(from: Cell) -> Vec<Move> {
-    let slides = Face::ALL.map(|direction| Motion::Slide { direction });
-    let pivots = Face::ALL.into_iter().flat_map(|support| {
-        perpendicular(support)
-            .flat_map(move |towards| [Turn::Quarter, Turn::Half].map(|turn| Motion::Pivot { support, towards, turn }))
-    });
-    slides.into_iter().chain(pivots).map(|motion| Move { from, motion }).collect()
+    cube().ways().iter().map(|way| Move { from, motion: way.motion, kind: way.kind }).collect()
 }
 
 fn cube_at(cell: Cell) -> Solid {
@@ -65,16 +60,21 @@ fn every_move_and_its_inverse_are_the_identity() {
     }
 }
 
-/// All moves that the definitions allow in a configuration, by trying every cell nearby.
-fn legal_by_definition(configuration: &crate::robot::Configuration) -> BTreeSet<String> {
+/// All moves that the definitions allow in a configuration, by trying every cell within `reach`.
+pub(super) fn legal_by_definition(configuration: &Configuration, reach: i32) -> BTreeSet<String> {
     let count = configuration.modules.len();
+    let kinds = u16::try_from(configuration.catalogue.motions.len()).unwrap();
+    let supports: Vec<Option<usize>> = (0..count).map(Some).chain([None]).collect();
     let mut legal = BTreeSet::new();
     for module in 0..count {
         let from = configuration.modules[module].placement.cell;
-        for offset in 0..27 {
-            let to = [from[0] + offset / 9 - 1, from[1] + offset / 3 % 3 - 1, from[2] + offset % 3 - 1];
-            let pivots = (0..count).map(|support| Action::Pivot { module, support, to });
-            for action in pivots.chain([Action::Slide { module, to }]) {
+        let within = || -reach..=reach;
+        let cells = within().flat_map(|x| within().flat_map(move |y| within().map(move |z| [x, y, z])));
+        for to in cells.map(|offset| displaced(from, offset)) {
+            let actions = supports
+                .iter()
+                .flat_map(|&support| (0..kinds).map(move |motion| Action::Move { motion, module, support, to }));
+            for action in actions {
                 let Ok(next) = transition(configuration, &action) else { continue };
                 let path = next.path.unwrap();
                 let solid =
@@ -100,10 +100,10 @@ proptest! {
         let mut index = 0;
         configuration.connections.retain(|_| { index += 1; kept >> (index % 32) & 3 != 0 });
         let (layout, bonds) = (cells(&configuration), bonds(&configuration));
-        let moves = moves_of(&layout).into_iter().filter(|step| step.is_allowed_by(&layout, &bonds));
+        let moves = moves_of(&layout).into_iter().filter(|&step| cube().allows(&layout, &bonds, step));
         let generated: Vec<String> =
             moves.map(|step| format!("{:?}", Step::Move(step).action(&configuration).unwrap())).collect();
-        prop_assert_eq!(generated.iter().cloned().collect::<BTreeSet<_>>(), legal_by_definition(&configuration));
+        prop_assert_eq!(generated.iter().cloned().collect::<BTreeSet<_>>(), legal_by_definition(&configuration, 1));
         prop_assert_eq!(generated.iter().collect::<BTreeSet<_>>().len(), generated.len(), "a move twice");
     }
 
@@ -115,7 +115,7 @@ proptest! {
         let mut back = Vec::new();
         for choice in choices {
             let (layout, engaged) = (cells(&state), bonds(&state));
-            let moves = moves_of(&layout).into_iter().filter(|step| step.is_allowed_by(&layout, &engaged));
+            let moves = moves_of(&layout).into_iter().filter(|&step| cube().allows(&layout, &engaged, step));
             let open = layout.touching().into_iter().filter(|bond| !engaged.contains(bond));
             let steps: Vec<Step> = moves
                 .map(Step::Move)
@@ -139,7 +139,7 @@ proptest! {
 fn a_slide_needs_two_coplanar_neighbours() {
     let slides = |filled: &[Cell]| {
         let moves = moves_of(&super::layout_of(filled)).into_iter();
-        moves.filter(|step| step.from == [0, 0, 1] && matches!(step.motion, Motion::Slide { .. })).count()
+        moves.filter(|step| step.from == [0, 0, 1] && matches!(step.motion, Motion::Translation { .. })).count()
     };
     assert_eq!(slides(&[[0, 0, 0], [0, 0, 1]]), 0);
     assert_eq!(slides(&[[0, 0, 0], [1, 0, 0], [0, 0, 1]]), 1);
@@ -151,10 +151,12 @@ fn a_slide_needs_two_coplanar_neighbours() {
 fn a_pivot_lands_on_the_face_that_it_comes_down_on() {
     let quarter = Move {
         from: [0, 0, 1],
-        motion: Motion::Pivot { support: Face::NegZ, towards: Face::PosX, turn: Turn::Quarter },
+        motion: Motion::Rotation { support: Face::NegZ, towards: Face::PosX, turn: Turn::Quarter },
+        kind: 1,
     };
     assert_eq!(quarter.to(), [1, 0, 1]);
-    let half = Move { motion: Motion::Pivot { support: Face::NegZ, towards: Face::PosX, turn: Turn::Half }, ..quarter };
+    let half =
+        Move { motion: Motion::Rotation { support: Face::NegZ, towards: Face::PosX, turn: Turn::Half }, ..quarter };
     assert_eq!(half.to(), neighbour([0, 0, 0], Face::PosX));
     let layout = super::layout_of(&[[0, 0, 0], [1, 0, 0], [0, 0, 1]]);
     assert_eq!(quarter.landing(&layout)[0].cells(), [[1, 0, 0], [1, 0, 1]]);

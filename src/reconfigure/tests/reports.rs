@@ -3,11 +3,11 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use crate::reconfigure::moves::{Motion, Move};
+use crate::reconfigure::moves::Move;
 use crate::reconfigure::plan::{Limit, Objective, Outcome, Plan};
 use crate::reconfigure::replay::replay;
 use crate::reconfigure::trace::Trace;
-use crate::reconfigure::{Options, solve};
+use crate::reconfigure::{Event, News, Options, solve};
 use crate::robot::{Cell, Face};
 
 use super::{cubes, goal, plan, solved, tower_to_row};
@@ -77,20 +77,60 @@ fn limits_and_cancellation_end_the_search_honestly() {
 }
 
 #[test]
-fn progress_is_reported() {
+fn events_tell_better_and_better_plans_and_tighter_and_tighter_bounds() {
     let (start, target) = tower_to_row();
-    let mut events = Vec::new();
-    solve(&start, &target, &Options::default(), &mut |event| events.push(*event)).unwrap();
-    assert!(!events.is_empty());
-    assert!(events.windows(2).all(|pair| pair[0].oracle_solves <= pair[1].oracle_solves));
+    for objective in [Objective::Margin, Objective::Moves] {
+        let mut events: Vec<Event> = Vec::new();
+        let options = Options { objective, ..Options::default() };
+        let report = solve(&start, &target, &options, &mut |event| events.push(event.clone())).unwrap();
+        for pair in events.windows(2) {
+            let [before, after] = [pair[0].known, pair[1].known];
+            assert!(before.oracle_solves <= after.oracle_solves);
+            assert!(before.margin_at_most >= after.margin_at_most && before.moves_at_least <= after.moves_at_least);
+            let is_tighter =
+                before.margin_at_most > after.margin_at_most || before.moves_at_least < after.moves_at_least;
+            assert!(is_tighter || pair[1].news != News::Bound, "a bound that is none");
+        }
+        let mut plans = Vec::new();
+        for event in &events {
+            if let News::Plan(plan) = &event.news {
+                assert!(replay(&start, &target, plan, 0.0).unwrap().is_verified());
+                assert_eq!((event.known.margin, event.known.moves), (plan.margin.map(|m| m.lower), Some(plan.moves)));
+                plans.push(plan);
+            }
+        }
+        let best = solved(&report);
+        assert_eq!(plans.last(), Some(&best), "the best plan is the last that was told");
+        let last = events.last().unwrap().known;
+        assert!(last.margin_at_most >= best.margin.unwrap().lower && last.moves_at_least <= best.moves);
+    }
+}
+
+#[test]
+fn a_search_stops_below_its_memory_limit_with_what_it_has() {
+    let (start, target) = tower_to_row();
+    let whole = plan(&start, &target, &Options::default());
+    let limit = whole.statistics.bytes as usize / 2;
+    let cut = plan(&start, &target, &Options { max_bytes: Some(limit), ..Options::default() });
+    assert_eq!(cut.outcome, Outcome::OutOfBudget(Limit::Memory));
+    assert!(cut.statistics.bytes as usize <= limit, "{} of {limit}", cut.statistics.bytes);
+    assert!(cut.proof.margin_at_most >= solved(&whole).margin.unwrap().lower);
+    // What the caller measures counts, whatever was counted.
+    let measured = Options { max_bytes: Some(1 << 40), measure_bytes: Some(|| Some(1 << 41)), ..Options::default() };
+    assert_eq!(plan(&start, &target, &measured).outcome, Outcome::OutOfBudget(Limit::Memory));
 }
 
 #[test]
 fn a_trace_forgets_the_order_of_independent_moves_only() {
-    let slide = |from, direction| Move { from, motion: Motion::Slide { direction } };
+    let slide = |from, direction: Face| Move {
+        from,
+        motion: crate::robot::Motion::Translation { by: direction.step() },
+        kind: 0,
+    };
+    let trace = |moves: &[Move]| Trace::new(moves.iter().copied(), |_| Vec::new());
     let (near, far) = (slide([0, 0, 1], Face::PosX), slide([7, 0, 1], Face::NegX));
     let next = slide([1, 0, 1], Face::PosX);
-    assert_eq!(Trace::new([near, far]), Trace::new([far, near]));
-    assert_eq!(Trace::new([near, next, far]), Trace::new([far, near, next]));
-    assert_ne!(Trace::new([near, next]), Trace::new([next, near]));
+    assert_eq!(trace(&[near, far]), trace(&[far, near]));
+    assert_eq!(trace(&[near, next, far]), trace(&[far, near, next]));
+    assert_ne!(trace(&[near, next]), trace(&[next, near]));
 }

@@ -90,7 +90,7 @@ fn altered_poses_and_claims_are_rejected() {
     for at in 0..best.actions.len() {
         let mut tampered = best.clone();
         match &mut tampered.actions[at].action {
-            Action::Slide { to, .. } | Action::Pivot { to, .. } => to[0] += 1,
+            Action::Move { to, .. } => to[0] += 1,
             Action::Attach(_) | Action::Detach(_) => continue,
         }
         rejected(&tampered, "another cell");

@@ -6,6 +6,7 @@ use crate::statics::{Connector, Model};
 use crate::robot::catalogue::Catalogue;
 use crate::robot::module_type::{BodyType, LatticeType, ModuleType};
 use crate::robot::shape::Shape;
+use crate::robot::stencil::MotionType;
 
 /// Edge length in m. Published: M-Blocks are cubes of 50 mm (J. W. Romanishin,
 /// K. Gilpin, D. Rus: "M-Blocks: momentum-driven, magnetic modular robots",
@@ -87,6 +88,7 @@ impl Catalogue {
         Self {
             name: "cube".into(),
             connectors: vec![magnet, hinge("hinge", HINGE_DRIVE), latch, hinge("latched-hinge", LATCHED_HINGE_DRIVE)],
+            motions: vec![MotionType::slide(), MotionType::pivot()],
             module_types: vec![cube_type("cube", 0, 1), cube_type("cube-latched", 2, 3)],
         }
     }
@@ -116,6 +118,6 @@ fn cube_type(name: &str, face: usize, hinge: usize) -> ModuleType {
         shape: Shape::Cuboid { half_extents: Vec3::new(half, half, half) },
         shape_pose: Pose::identity(),
     };
-    let lattice = LatticeType { pitch: PITCH, face, hinge: Some(hinge), slide: true, pivot: true };
+    let lattice = LatticeType { pitch: PITCH, face, hinge: Some(hinge), motions: vec![0, 1] };
     ModuleType::of_lattice(name, body, lattice)
 }

@@ -61,7 +61,12 @@ impl Catalogue {
             strength: STRENGTH,
             model: Model::Cone { friction: FRICTION, radius: RADIUS },
         };
-        Self { name: "freesn".into(), connectors: vec![magnet], module_types: vec![node(), strut()] }
+        Self {
+            name: "freesn".into(),
+            connectors: vec![magnet],
+            motions: Vec::new(),
+            module_types: vec![node(), strut()],
+        }
     }
 }
 

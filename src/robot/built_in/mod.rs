@@ -4,9 +4,11 @@
 
 mod cube;
 mod freesn;
+mod motions;
 pub mod rofi;
 
 use super::catalogue::Catalogue;
+pub use motions::BUILT_IN_MOTIONS;
 
 /// Names of the built-in catalogues.
 pub const BUILT_IN: [&str; 3] = ["cube", "freesn", "rofi"];

@@ -95,7 +95,7 @@ impl Catalogue {
             },
         };
         let types = std::iter::once(universal(STEP_DEGREES)).chain(PADS.map(pad));
-        Self { name: "rofi".into(), connectors: vec![dock], module_types: types.collect() }
+        Self { name: "rofi".into(), connectors: vec![dock], motions: Vec::new(), module_types: types.collect() }
     }
 
     /// The catalogue with another step of the joints in degrees, a divisor of 90, and with pads of further sizes (in

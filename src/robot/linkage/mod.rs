@@ -9,6 +9,7 @@ mod engagement;
 mod kinematics;
 mod problems;
 mod spot;
+mod square;
 mod symmetry;
 #[cfg(test)]
 mod tests;
@@ -20,15 +21,17 @@ use petgraph::unionfind::UnionFind;
 use crate::spatial::{Pose, Vec3};
 
 use super::catalogue::Catalogue;
-use super::configuration::{Matching, ModuleLoad, Requirement};
+use super::configuration::{Matching, ModuleLoad};
 use super::environment::Environment;
 use super::module_type::ModuleType;
+use super::requirement::Requirement;
 
 pub use code::Code;
 pub use engagement::{Engagement, MEETING, frame_between, orientations_between};
 pub use kinematics::{child_pose, mated};
 pub use spot::{MICRO, Spot};
-pub use symmetry::Symmetry;
+pub use square::is_square;
+pub use symmetry::{Directions, Symmetry};
 
 /// A module of a linkage.
 #[derive(Clone, Debug, PartialEq)]

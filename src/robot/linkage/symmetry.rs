@@ -8,6 +8,7 @@
 use nalgebra::{Unit, Vector3};
 
 use crate::robot::catalogue::Catalogue;
+use crate::robot::lattice::Face;
 use crate::robot::module_type::{BodyType, JointType, ModuleType, PortPlace, PortType};
 use crate::robot::shape::Shape;
 use crate::spatial::{Point, Pose, Rotation, Vec3};
@@ -17,6 +18,16 @@ use super::MEETING;
 
 /// Turns of ports and balls that are tried, in degrees.
 const TURN: f64 = 15.0;
+
+/// Where on a ball ports may come to sit, as far as turns of it depend on that.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Directions<'a> {
+    /// On its axes only, turned by quarters: see [`super::is_square`]. It looks the same from all of them.
+    Axes,
+    /// Anywhere; ports roll over it in these steps, in degrees. It is only turned so that a path in such steps
+    /// stays one: about its z axis, and upside down.
+    Steps(&'a [f64]),
+}
 
 /// How a position of one joint reads as one of another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,6 +56,11 @@ impl Symmetry {
         (pose * body * self.turn, self.positions(module_type, joints))
     }
 
+    /// Whether a point of the module frame, in m, is at the same place in the other description, up to a distance in m.
+    pub fn keeps_point(&self, point: &Vec3, tolerance: f64) -> bool {
+        self.first == 0 && ((self.turn * Point::from(*point)).coords - point).norm() <= tolerance
+    }
+
     /// The joint positions of [`Symmetry::described`].
     pub fn positions(&self, module_type: &ModuleType, joints: &[i32]) -> Vec<i32> {
         let mut positions = vec![0; joints.len()];
@@ -56,16 +72,14 @@ impl Symmetry {
 }
 
 impl Catalogue {
-    /// The symmetries of a module type, the identity first. `roll_steps` are the steps in degrees in which ports
-    /// roll over its surfaces: a ball is only turned so that a path in such steps stays one.
+    /// The symmetries of a module type, the identity first.
     ///
-    /// All that map ports onto ports, or a ball in steps of 15 degrees and upside down; a body with neither
+    /// All that map ports onto ports, or a ball as [`Directions`] allow in steps of 15 degrees; a body with neither
     /// has the identity alone. A port is turned by as much as its connector and its angles allow.
-    pub fn symmetries(&self, module_type: usize, roll_steps: &[f64]) -> Vec<Symmetry> {
+    pub fn symmetries(&self, module_type: usize, directions: Directions) -> Vec<Symmetry> {
         let kind = &self.module_types[module_type];
-        let search =
-            Search { catalogue: self, kind, roll_steps, tolerance: MEETING * kind.size().max(f64::MIN_POSITIVE) };
-        search.all()
+        let tolerance = MEETING * kind.size().max(f64::MIN_POSITIVE);
+        Search { catalogue: self, kind, directions, tolerance }.all()
     }
 }
 
@@ -73,7 +87,7 @@ impl Catalogue {
 struct Search<'a> {
     catalogue: &'a Catalogue,
     kind: &'a ModuleType,
-    roll_steps: &'a [f64],
+    directions: Directions<'a>,
     /// Distance in m up to which places are the same.
     tolerance: f64,
 }
@@ -143,11 +157,9 @@ impl Search<'_> {
                 }
                 (PortPlace::Surface, PortPlace::Surface) => {
                     let [a, b] = [from, to].map(|body| self.kind.bodies[body].shape_pose.translation.vector);
-                    let over = Rotation::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI);
-                    for angle in turns.clone() {
-                        for turn in [about_z(angle), about_z(angle) * over] {
-                            candidates.push(Pose::from_parts((a - turn * b).into(), turn));
-                        }
+                    // z to any axis, and about it: of these `keeps_grid` leaves what the directions allow.
+                    for turn in turns.clone().flat_map(|t| Face::ALL.map(|face| face.outward_frame() * about_z(t))) {
+                        candidates.push(Pose::from_parts((a - turn * b).into(), turn));
                     }
                 }
                 _ => {}
@@ -222,8 +234,7 @@ impl Search<'_> {
         match (&a.shape, &b.shape) {
             (Shape::Cuboid { half_extents: a }, Shape::Cuboid { half_extents: b }) => {
                 let turned = between.rotation.to_rotation_matrix().into_inner().abs();
-                let is_turn = turned.iter().all(|entry| entry.min(1.0 - entry) <= MEETING);
-                centred && is_turn && (turned * b - a).norm() <= self.tolerance
+                centred && is_quartered(&between.rotation) && (turned * b - a).norm() <= self.tolerance
             }
             (Shape::Cylinder { radius: a, height: h }, Shape::Cylinder { radius: b, height: k }) => {
                 let along = between.rotation * Vec3::z();
@@ -269,10 +280,15 @@ impl Search<'_> {
 
     /// Whether a turn carries paths over a ball in the steps of its ports to such paths.
     fn keeps_grid(&self, turn: &Rotation) -> bool {
-        let (z, x) = (turn * Vec3::z(), turn * Vec3::x());
-        let upright = (z.z.abs() - 1.0).abs() <= MEETING;
-        let angle = x.y.atan2(x.x).to_degrees();
-        upright && self.roll_steps.iter().all(|&step| is_multiple(angle, step))
+        match self.directions {
+            Directions::Axes => is_quartered(turn),
+            Directions::Steps(steps) => {
+                let (z, x) = (turn * Vec3::z(), turn * Vec3::x());
+                let upright = (z.z.abs() - 1.0).abs() <= MEETING;
+                let angle = x.y.atan2(x.x).to_degrees();
+                upright && steps.iter().all(|&step| is_multiple(angle, step))
+            }
+        }
     }
 
     /// Whether a connector's limits are the same after a turn by this angle in rad about its z axis.
@@ -320,8 +336,14 @@ fn offsets(a: &JointType, b: &JointType, sign: i32) -> Vec<i32> {
     }
 }
 
+/// Whether a rotation carries axes to axes: one of the 24 of a cube.
+pub(super) fn is_quartered(rotation: &Rotation) -> bool {
+    let entries = rotation.to_rotation_matrix().into_inner().abs();
+    entries.iter().all(|entry| entry.min(1.0 - entry) <= MEETING)
+}
+
 /// Whether one angle in degrees is a whole number of another.
-fn is_multiple(angle: f64, of: f64) -> bool {
+pub(super) fn is_multiple(angle: f64, of: f64) -> bool {
     let count = angle / of;
     (count - count.round()).abs() * of <= MEETING.to_degrees()
 }

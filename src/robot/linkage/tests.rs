@@ -87,7 +87,8 @@ fn chain(bends: &[i32], rolls: &[i32]) -> Linkage {
             torsion: 1.0,
         },
     };
-    let catalogue = Catalogue { name: "test".into(), connectors: vec![latch], module_types: vec![hinged()] };
+    let catalogue =
+        Catalogue { name: "test".into(), connectors: vec![latch], motions: Vec::new(), module_types: vec![hinged()] };
     let module = |(i, bend): (usize, &i32)| Module {
         id: format!("m{i}"),
         module_type: 0,

@@ -1,14 +1,17 @@
 //! Every move reverses exactly, and what makes no difference makes none.
 
+use std::collections::HashSet;
+
 use proptest::prelude::*;
 use proptest::sample::Index;
 
 use crate::reconfigure::linkage::action::{Action, Half};
-use crate::reconfigure::linkage::arrangement::{Arrangements, Frame};
+use crate::reconfigure::linkage::arrangement::{Arrangement, Arrangements, Frame};
 use crate::reconfigure::linkage::clearance::Clearance;
 use crate::reconfigure::linkage::moves::{Rules, Step, View};
 use crate::reconfigure::linkage::problem::Problem;
 use crate::reconfigure::linkage::state::State;
+use crate::robot::ModuleLoad;
 use crate::robot::linkage::{Code, Connection, Linkage};
 use crate::spatial::{Pose, Rotation, Vec3};
 
@@ -154,6 +157,29 @@ proptest! {
     }
 
     #[test]
+    fn a_freeform_robot_moves_alike_however_its_modules_are_described(
+        spots in prop::collection::vec((0..4, 0..=2, 0..4), 2),
+        grid in prop::sample::select(vec![90, 45]),
+        ways in prop::collection::vec(any::<Index>(), 5),
+    ) {
+        let spots: Vec<[i32; 3]> = spots.into_iter().map(|(a, p, s)| [a * grid, p * grid, s * grid]).collect();
+        let linkage = string(&spots);
+        let problem = problem(&linkage);
+        let mut other = linkage.clone();
+        for (module, way) in other.modules.iter_mut().zip(&ways) {
+            let class = problem.classes.iter().find(|class| class.module_type == module.module_type);
+            let class = class.expect("every module has a class");
+            (module.pose, _) = way.get(&class.symmetries).described(&class.kind, &module.pose, &module.joints);
+        }
+        let arrangements = Arrangements::new(&problem.classes, Frame::World);
+        let reached = |linkage: &Linkage| -> HashSet<Arrangement> {
+            let view = view(&problem, linkage);
+            view.steps(RULES).iter().map(|step| arrangements.of(&view.after(step)).arrangement).collect()
+        };
+        prop_assert_eq!(reached(&linkage), reached(&other));
+    }
+
+    #[test]
     fn a_difference_makes_one(
         joints in prop::collection::vec(quarters(), 3),
         rolls in prop::collection::vec(0..4, 2),
@@ -211,7 +237,13 @@ fn the_symmetries_of_modules_follow_from_their_types() {
         |linkage: &Linkage| problem(linkage).classes.iter().map(|class| class.symmetries.len()).collect::<Vec<_>>();
     // Halves swapped, and either half turned over with its joint's sign: 2 times 2 times 2.
     assert_eq!(count(&chain(&[[0, 0, 0]], &[])), [8]);
-    // A node turned by quarters or upside down; a strut by half a turn, since it holds less across than along, or
-    // its ends swapped.
-    assert_eq!(count(&string(&[[0, 90, 0]])), [8, 4]);
+    // A node turned like a cube where struts are on its axes only, otherwise by quarters or upside down; a strut by
+    // half a turn, since it holds less across than along, or its ends swapped.
+    assert_eq!(count(&string(&[[0, 90, 0]])), [24, 4]);
+    assert_eq!(count(&string(&[[0, 45, 0]])), [8, 4]);
+    // A load at the middle lets them be, one at a strut's end tells its ends apart.
+    let load = |module, at| ModuleLoad { module, force: Vec3::z(), torque: Vec3::zeros(), at };
+    let mut loaded = string(&[[0, 90, 0], [0, 90, 0]]);
+    loaded.loads = vec![load(1, None), load(2, None), load(3, Some(Vec3::new(0.0, 0.0, 0.0435)))];
+    assert_eq!(count(&loaded), [24, 4, 24, 2]);
 }
