@@ -70,6 +70,7 @@ fn stopped(limit: Limit) -> &'static str {
         Limit::Memory => "stopped at the memory limit",
         Limit::Cancelled => "interrupted",
         Limit::Precision => "some margins are too close to the required one to be decided",
+        Limit::Incomplete => "made module by module, without a search of all plans",
     }
 }
 
