@@ -162,12 +162,15 @@
 //! around the worst), not between them. One module, joint or connection moves at a time.
 
 pub mod certificate;
+pub mod generate;
 pub mod geometry;
 pub mod io;
 pub mod reconfigure;
 pub mod robot;
+pub mod schedule;
 pub mod spatial;
 pub mod statics;
+pub mod suite;
 
 /// The README's examples, compiled.
 #[cfg(doctest)]

@@ -5,26 +5,31 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Each layer with the layers that it may use.
-const LAYERS: [(&str, &[&str]); 7] = [
+const LAYERS: [(&str, &[&str]); 10] = [
     ("spatial", &[]),
     ("statics", &["spatial"]),
     ("certificate", &["spatial", "statics"]),
     ("robot", &["spatial", "statics"]),
     ("geometry", &["spatial", "robot"]),
     ("reconfigure", &["spatial", "statics", "robot", "geometry"]),
-    ("io", &["spatial", "statics", "certificate", "robot", "geometry", "reconfigure"]),
+    ("schedule", &["spatial", "statics", "robot", "geometry", "reconfigure"]),
+    ("generate", &["spatial", "statics", "robot", "geometry", "reconfigure"]),
+    ("suite", &["spatial", "statics", "robot", "geometry", "reconfigure", "generate"]),
+    ("io", &["spatial", "statics", "certificate", "robot", "geometry", "reconfigure", "generate", "suite"]),
 ];
 
 /// Libraries that only one layer may name.
-const HOMES: [(&str, &str); 8] = [
+const HOMES: [(&str, &str); 10] = [
     ("clarabel", "statics"),
     ("parry3d_f64", "geometry"),
     ("serde", "io"),
     ("serde_json", "io"),
+    ("rand_chacha", "generate"),
     ("schemars", "io"),
     ("sha2", "io"),
     ("stl_io", "io"),
     ("tobj", "io"),
+    ("toml", "io"),
 ];
 
 /// What the checker of certificates may take from the oracle: plain data.

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use libtest_mimic::{Arguments, Failed, Trial};
 use steadfast::io::{
     Diagnostics, SourceFile, no_references, read_catalogue, read_certificate, read_checkable, read_configuration,
-    read_linkage, read_problem, read_structure, read_verifiable,
+    read_linkage, read_problem, read_results, read_structure, read_suite, read_verifiable,
 };
 
 const KINDS: [&str; 8] =
@@ -43,10 +43,14 @@ fn main() {
             ),
         )
     }));
-    for path in problems::texts_and_json_files("malformed/rofi").expect("the directory is there") {
-        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        trials.push(Trial::test(format!("rofi/{name}"), move || check("rofi", &path)));
+    for kind in ["rofi", "suite", "result"] {
+        for path in problems::texts_and_json_files(&format!("malformed/{kind}")).expect("the directory is there") {
+            let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            trials.push(Trial::test(format!("{kind}/{name}"), move || check(kind, &path)));
+        }
     }
+    trials.push(Trial::test("ten megabytes of tables", || bounded("suite", "[[case]]\n".repeat(1_000_000))));
+    trials.push(Trial::test("ten megabytes of nested tables", || bounded("suite", "a={".repeat(3_000_000))));
     trials
         .push(Trial::test("ten megabytes of text", || bounded("rofi", format!("C\n{}", "M 0 0\n".repeat(1_500_000)))));
     trials.push(Trial::test("a pad of a million docks, joined nowhere", || {
@@ -76,6 +80,8 @@ fn read(kind: &str, file: &SourceFile) -> Result<(), Diagnostics> {
         "rofi" => read_linkage(file, &no_references).map(drop),
         "plan" => read_verifiable(file).map(drop),
         "certificate" => read_certificate(file).map(drop),
+        "suite" => read_suite(file).map(drop),
+        "result" => read_results(file).map(drop),
         _ => {
             let text = match kind {
                 "linkage_goal" => &include_bytes!("../problems/malformed/linkage_start.json")[..],

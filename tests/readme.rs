@@ -15,6 +15,16 @@ fn files(heading: &str) -> Vec<SourceFile> {
     blocks.map(|block| SourceFile::new("README.md", block)).collect()
 }
 
+/// The motions shown are those of a problem that the planner's tests solve.
+#[test]
+fn own_motions_are_those_of_a_problem() {
+    let text = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/README.md")).unwrap();
+    let (_, shown) = text.split_once("```jsonc\n").expect("motions are shown");
+    let shown = shown.split("```").next().unwrap();
+    let problem = std::fs::read_to_string(problems::root().join("cubes/dash/start.json")).unwrap();
+    assert!(problem.contains(shown), "{shown}");
+}
+
 #[test]
 fn a_problem_reads() {
     let files = files("Writing a problem");

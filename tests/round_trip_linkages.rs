@@ -137,7 +137,7 @@ prop_compose! {
         let mut linkage = Linkage {
             catalogue, gravity, environment: Environment { module_friction: friction, ..Environment::default() },
             modules: vec![first], connections: Vec::new(), loads: Vec::new(),
-            require: Requirement { margin, connected },
+            require: Requirement { margin, connected, ..Requirement::default() },
         };
         let mut codes = Vec::new();
         for growth in growths {

@@ -17,7 +17,8 @@ use steadfast::reconfigure::{
 };
 use steadfast::robot::{
     Catalogue, Cell, Configuration, Environment, Face, FaceConnection, Goal, Ground, HeightField, Hull, Matching, Mesh,
-    Module, ModuleLoad, Obstacle, Orientation, Placement, Port, Requirement, Shape, Terrain,
+    Module, ModuleLoad, Motion, MotionType, Obstacle, Orientation, Placement, Port, Requirement, Shape, Stencil,
+    Terrain,
 };
 use steadfast::spatial::{Pose, Rotation, Vec3};
 use steadfast::statics::Bracket;
@@ -61,13 +62,36 @@ fn add(a: Cell, b: Cell) -> Cell {
 
 /// The built-in catalogue, or one like it that a file must spell out.
 fn catalogue() -> impl Strategy<Value = Catalogue> {
-    option::of((1e-3..10.0, "\\PC{0,9}")).prop_map(|own| {
+    option::of((1e-3..10.0, "\\PC{0,9}", motions())).prop_map(|own| {
         let mut catalogue = Catalogue::cube();
-        if let Some((mass, name)) = own {
+        if let Some((mass, name, motions)) = own {
             catalogue.name = name;
             catalogue.module_types[0].bodies[0].mass = mass;
+            catalogue.motions.extend(motions);
+            catalogue.module_types[0].lattice.as_mut().unwrap().motions = (1..catalogue.motions.len()).collect();
         }
         catalogue
+    })
+}
+
+/// Motions that are not built in: several cells at once over a row, and a turn, wanting more or less room.
+fn motions() -> impl Strategy<Value = Vec<MotionType>> {
+    let turn = select(vec![Turn::Quarter, Turn::Half]);
+    option::of(("[a-z]{4}\\PC{0,5}", 1..9i32, turn, any::<bool>())).prop_map(|own| {
+        own.into_iter()
+            .filter(|(name, ..)| !["roll", "slide", "pivot", "rotate"].contains(&name.as_str()))
+            .map(|(name, cells, turn, mirrored)| {
+                let motion = Motion::Translation { by: [0, cells, 0] };
+                let occupied = (0..=cells).map(|y| [1, y, 0]).collect();
+                let along = Stencil { motion, occupied, free: vec![[-1, 0, 0], [-1, cells, 0]], mirrored };
+                let motion = Motion::Rotation { support: Face::NegY, towards: Face::PosX, turn };
+                let over =
+                    Stencil { motion, occupied: vec![[0, -1, 0], [1, -1, 0]], free: Vec::new(), mirrored: false };
+                let round = Stencil { occupied: vec![[0, -1, 0]], ..over.clone() };
+                let about = if turn == Turn::Quarter { over } else { round };
+                MotionType { name, stencils: vec![along, about] }
+            })
+            .collect()
     })
 }
 
@@ -134,7 +158,7 @@ prop_compose! {
             environment: Environment { ground, obstacles, module_friction: module_friction.abs() },
             modules,
             connections: Vec::new(),
-            require: Requirement { margin, connected },
+            require: Requirement { margin, connected, ..Requirement::default() },
         };
         let mut engaged = engaged.into_iter().cycle();
         configuration.connections = configuration.touching_connections();
@@ -199,6 +223,7 @@ fn plan(start: &Configuration, sketch: &Sketch, number: usize) -> (Plan, Vec<Con
     let mut cells: Vec<Cell> = start.modules.iter().map(|module| module.placement.cell).collect();
     let mut contradictions = Vec::new();
     let mut actions = Vec::new();
+    let kinds = u16::try_from(start.catalogue.motions.len()).unwrap();
     for draft in &sketch.drafts {
         let [module, other] = draft.modules.map(|index| index.index(cells.len()));
         let pair = connection([module, other], [draft.faces[0], draft.faces[1]]);
@@ -207,9 +232,9 @@ fn plan(start: &Configuration, sketch: &Sketch, number: usize) -> (Plan, Vec<Con
             1 => Action::Detach(pair),
             2 if module != other => {
                 let beside = if draft.half { cells[other] } else { cells[module] };
-                Action::Move { motion: 1, module, support: Some(other), to: add(beside, draft.faces[0].step()) }
+                Action::Move { motion: kinds - 1, module, support: Some(other), to: add(beside, draft.faces[0].step()) }
             }
-            _ => Action::Move { motion: 0, module, support: None, to: draft.to },
+            _ => Action::Move { motion: if kinds > 2 { 2 } else { 0 }, module, support: None, to: draft.to },
         };
         if let Action::Move { module, support: Some(support), to, .. } = action {
             let given = AxisAngle { axis: draft.faces[2], turn: if draft.half { Turn::Half } else { Turn::Quarter } };

@@ -269,3 +269,27 @@ fn nothing_weighs_nothing() {
     (s.gravity, s.loads) = (Vec3::zeros(), Vec::new());
     assert_eq!(answer(&s).utilisation, Bracket::exact(0.0));
 }
+
+/// Something in each slides where nothing holds it and nothing pushes it, while something else
+/// collapses: how fast it slides means nothing and may not drown the motion that counts.
+#[test]
+fn what_slides_idly_is_not_what_collapses() {
+    let recipe = |(bodies, seed)| Recipe { kind: Kind::Friction, bodies, seed };
+    let found = [
+        (12, 757_211_810_515),
+        (15, 1_057_213_449_099),
+        (23, 550_048_494_164),
+        (21, 586_689_396_184),
+        (11, 486_218_190_837),
+        (16, 612_483_241_992),
+    ];
+    for recipe in found.map(recipe) {
+        let upright = structure(&recipe);
+        let mut random = Random::new(recipe.seed);
+        let motion = Pose::from_parts((random.vector() * 3.0).into(), random.rotation());
+        for s in [moved(&upright, &motion), upright] {
+            assert_eq!(answer(&s).verdict, Verdict::WholeBodyUnstable, "{recipe:?}");
+            assert_eq!(paper::solve(&s, 1e-8), paper::Answer::Infeasible, "{recipe:?}");
+        }
+    }
+}

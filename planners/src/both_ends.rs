@@ -1,205 +1,200 @@
-//! Shortest path of a required width from both ends at once: lazy bidirectional Dijkstra.
+//! Shortest path of a required width from both ends at once: lazy bidirectional A*.
+
+use std::collections::BTreeMap;
 
 use crate::algebra::Additive;
-use crate::graph::START;
-use crate::outcome::{Outcome, Path, Step};
+use crate::budget::Limit;
+use crate::graph::{Arrow, DEAD_END, End, START};
+use crate::outcome::{Outcome, Path};
 use crate::progress::Pass;
 use crate::queue::Queue;
 use crate::registry::StateId;
 use crate::search::{Bounds, PathOf, Search, is_wide_enough};
 use crate::space::{Reversible, Width};
+use crate::tree::Tree;
 
-/// One of the two searches.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum End {
-    Start,
-    Goal,
-}
+/// Estimated cost of the whole path, then (later is better) the cost so far.
+type Priority = (Additive, u32);
 
 /// A transition between a state that a side has settled and one that it may settle next.
-struct Way<A> {
-    near: StateId,
+#[derive(Clone, Copy)]
+struct Way {
+    arrow: Arrow,
     far: StateId,
-    action: A,
-    cost: u32,
 }
 
-/// How a side has reached a state.
-struct Label<A> {
-    cost: u32,
-    /// The state before it, seen from the end that the side began at, and the transition between them.
-    via: Option<(StateId, A, u32, Width)>,
+/// A transition between a state that is settled from one end and one that is settled from the other.
+#[derive(Clone, Copy)]
+struct Bridge {
+    /// The end that its arrow is seen from.
+    end: End,
+    arrow: Arrow,
+    far: StateId,
 }
 
 /// What one side has done.
-struct Side<A> {
-    labels: Vec<Option<Label<A>>>,
-    open: Queue<Additive, Way<A>>,
-}
-
-/// A transition from a state that is settled from the start to one that is settled from a goal.
-struct Bridge<A> {
-    from: StateId,
-    to: StateId,
-    action: A,
-    cost: u32,
+struct Side {
+    labels: Tree<Additive>,
+    open: Queue<Priority, Way>,
+    /// How many open ways there are by their cost so far.
+    costs: BTreeMap<u32, usize>,
+    /// Ways opened so far.
+    opened: usize,
 }
 
 /// Both sides and what joins them.
-struct Both<A> {
-    sides: [Side<A>; 2],
-    bridges: Queue<Additive, Bridge<A>>,
+struct Both {
+    floor: f64,
+    sides: [Side; 2],
+    bridges: Queue<Additive, Bridge>,
     /// Least cost that a path may have through a transition whose interval holds the floor.
     undecided: u32,
+    /// The largest width that such a path may have.
+    undecided_width: f64,
+}
+
+/// How a search ended.
+struct Run<P> {
+    best: Option<P>,
+    limit: Option<Limit>,
+    cost_at_least: u32,
+    /// If nothing was found: no path is wider.
+    width_at_most: f64,
 }
 
 impl<S: Reversible> Search<'_, S> {
     /// The cheapest path from the start to a goal whose width is at least `floor`, like
-    /// [`Search::shortest`] but searched from both ends: where a state has many neighbours and none of them is
-    /// known to be nearer to the goal, two searches of half the depth are far smaller than one.
+    /// [`Search::shortest`] but searched from both ends: two searches of half the depth are smaller than one where
+    /// estimates of the remaining cost tell little, and where only one end lies in the open, the other is soon
+    /// exhausted, which proves that there is no path.
     ///
-    /// Estimates of the remaining cost play no part.
+    /// Each side is an A* of its own with its own estimates, opened again where those are inconsistent, and
+    /// the one that has opened fewer ways goes on. A path that is not found yet costs at least what either side estimates, and
+    /// at least the sum of what the two have spent until they meet.
     ///
     /// # Guarantees
     ///
     /// Those of [`Search::shortest`]. A transition is certified only when no other that is still open, from its
-    /// side, leads to a state as cheaply, or when it joins the two sides.
+    /// side, is estimated to lead to a goal as cheaply, or when it joins the two sides. If nothing is found, the
+    /// proof's `width_at_most` takes all that was searched into account.
     pub fn from_both_ends(&mut self, floor: f64) -> Outcome<PathOf<S>> {
         self.begin();
         self.monitor.progress.pass = Pass::Shortest;
-        let (best, limit, cost_at_least) = self.search_from_both_ends(floor);
+        let Run { best, limit, cost_at_least, width_at_most } = self.search_from_both_ends(floor);
         self.monitor.progress.best_cost = best.as_ref().map(|path| path.cost);
         self.monitor.report();
-        let width_at_most = best.as_ref().map_or(f64::NEG_INFINITY, |path| path.width.lower).max(self.graph.cap());
-        self.conclude(best, limit, floor, Bounds { width_at_most, cost_at_least })
+        let found = best.as_ref().map(|path| path.width.lower.max(self.graph.cap()));
+        let bounds = Bounds { width_at_most: found.unwrap_or(width_at_most), cost_at_least };
+        self.conclude(best, limit, floor, bounds)
     }
 
-    fn search_from_both_ends(&mut self, floor: f64) -> (Option<PathOf<S>>, Option<crate::Limit>, u32) {
+    fn search_from_both_ends(&mut self, floor: f64) -> Run<PathOf<S>> {
+        let cap = self.graph.cap();
         let goals: Vec<StateId> = self.graph.space().goals().into_iter().map(|goal| self.graph.intern(goal)).collect();
         if goals.contains(&START) {
-            return (Some(Path::new(Vec::new())), None, 0);
+            let best = Some(Path::new(Vec::new()));
+            return Run { best, limit: None, cost_at_least: 0, width_at_most: cap };
         }
-        let mut both = Both { sides: [Side::new(), Side::new()], bridges: Queue::new(), undecided: u32::MAX };
-        both.side(End::Start).settle(START, Label { cost: 0, via: None });
+        let mut both = Both::new(floor);
+        both.side(End::Start).labels.settle(START, Additive(0), None);
         for &goal in &goals {
-            both.side(End::Goal).settle(goal, Label { cost: 0, via: None });
+            both.side(End::Goal).labels.settle(goal, Additive(0), None);
         }
-        self.open(&mut both, End::Start, START, floor);
+        self.open(&mut both, End::Start, START);
         for goal in goals {
-            self.open(&mut both, End::Goal, goal, floor);
+            self.open(&mut both, End::Goal, goal);
         }
 
+        let mut proved = 0;
         loop {
             let unseen = both.unseen();
             let bridge = both.bridges.peek().map_or(u32::MAX, |head| head.priority.0);
-            let cost_at_least = unseen.min(bridge).min(both.undecided);
+            // With inconsistent estimates the bound may fall; what was proved stays.
+            proved = unseen.min(bridge).min(both.undecided).max(proved);
             if unseen == u32::MAX && bridge == u32::MAX {
-                let limit = (both.undecided < u32::MAX).then_some(crate::Limit::Precision);
-                return (None, limit, both.undecided);
+                let limit = (both.undecided < u32::MAX).then_some(Limit::Precision);
+                let width_at_most = both.undecided_width.max(floor.next_down()).min(cap);
+                return Run { best: None, limit, cost_at_least: both.undecided, width_at_most };
             }
-            self.monitor.progress.cost_at_least = self.monitor.progress.cost_at_least.max(cost_at_least);
+            self.monitor.progress.cost_at_least = self.monitor.progress.cost_at_least.max(proved);
             if let Some(limit) = self.tick(both.bytes()) {
-                return (None, Some(limit), cost_at_least);
+                return Run { best: None, limit: Some(limit), cost_at_least: proved, width_at_most: cap };
             }
             if bridge <= unseen {
-                let head = both.bridges.pop().expect("it was seen");
-                let Bridge { from, to, action, cost } = head.item;
-                let width = self.certify_between(from, &action, to, floor);
+                let Bridge { end, arrow, far } = both.bridges.pop().expect("it was seen").item;
+                let width = self.graph.decide(end, arrow, floor);
                 if is_wide_enough(width.lower, floor) {
-                    let path = self.joined(&both, from, (action, cost, width), to);
-                    let limit = (cost_at_least < path.cost).then_some(crate::Limit::Precision);
-                    return (Some(path), limit, cost_at_least);
+                    let Some(path) = self.joined(&both, end, arrow, far) else {
+                        // It did not stand when it was looked at closely.
+                        return self.search_from_both_ends(floor);
+                    };
+                    let limit = (proved < path.cost).then_some(Limit::Precision);
+                    return Run { best: Some(path), limit, cost_at_least: proved, width_at_most: cap };
                 }
-                both.note_undecided(width, floor, bridge);
+                both.note_undecided(width, bridge);
             } else {
-                self.settle_next(&mut both, floor);
+                self.settle_next(&mut both);
             }
         }
     }
 
-    /// Settles the nearest open state of the side with fewer open ones.
-    fn settle_next(&mut self, both: &mut Both<S::Action>, floor: f64) {
-        let [starts, goals] = [End::Start, End::Goal].map(|end| both.side(end).open.bytes());
+    /// Settles the best open state of the side that has opened fewer: a side that is exhausted soon ends the search, and
+    /// one that goes on for ever in a corridor does not hold up the other.
+    fn settle_next(&mut self, both: &mut Both) {
+        let [starts, goals] = [End::Start, End::Goal].map(|end| both.side(end).opened);
         let end = if starts <= goals { End::Start } else { End::Goal };
-        let head = both.side(end).open.pop().expect("both sides have open states");
-        let (Additive(total), Way { near, far, action, cost }) = (head.priority, head.item);
-        if both.side(end).label(far).is_some() {
+        let (Additive(estimate), cost, Way { arrow, far }) = both.side(end).pop();
+        let is_better = |known: Option<Additive>| known.is_none_or(|known| Additive(cost) > known);
+        if !is_better(both.side(end).labels.value(far)) || both.is_finished(end.other(), far) {
             return;
         }
-        let width = match end {
-            End::Start => self.certify_between(near, &action, far, floor),
-            End::Goal => self.certify_between(far, &action, near, floor),
-        };
-        if is_wide_enough(width.lower, floor) {
-            both.side(end).settle(far, Label { cost: total, via: Some((near, action, cost, width)) });
-            self.open(both, end, far, floor);
+        let width = self.graph.decide(end, arrow, both.floor);
+        if is_wide_enough(width.lower, both.floor) {
+            both.side(end).labels.settle(far, Additive(cost), Some(arrow));
+            self.open(both, end, far);
         } else {
-            let rest = both.at_least_to(end.other(), far);
-            both.note_undecided(width, floor, total.saturating_add(rest));
+            both.note_undecided(width, estimate);
         }
     }
 
-    /// Opens all ways on from a state that a side has settled.
-    fn open(&mut self, both: &mut Both<S::Action>, end: End, near: StateId, floor: f64) {
+    /// Opens all ways on from a state whose label on a side has improved.
+    fn open(&mut self, both: &mut Both, end: End, near: StateId) {
         self.monitor.progress.statistics.expanded += 1;
-        let state = self.graph.state(near).clone();
-        let space = self.graph.space();
-        let transitions = match end {
-            End::Start => space.transitions(&state),
-            End::Goal => space.transitions_into(&state),
-        };
-        self.graph.generated += transitions.len() as u64;
-        let so_far = both.side(end).label(near).expect("it is settled").cost;
-        for transition in transitions {
-            let far = self.graph.intern(transition.to);
-            if !is_wide_enough(transition.width_at_most, floor) || both.side(end).label(far).is_some() {
+        match end {
+            End::Start => self.graph.expand(near),
+            End::Goal => self.graph.expand_into(near),
+        }
+        let Additive(so_far) = both.side(end).labels.value(near).expect("it is settled");
+        for (index, edge) in self.graph.seen_from(end, near).iter().enumerate() {
+            let (arrow, far) = (Arrow { from: near, index: index as u32 }, edge.to);
+            let cost = so_far.saturating_add(edge.cost);
+            let known = both.side(end).labels.value(far);
+            if !is_wide_enough(edge.width.upper, both.floor) || known.is_some_and(|known| known >= Additive(cost)) {
                 continue;
             }
-            let (action, cost) = (transition.action, transition.cost);
-            let total = so_far.saturating_add(cost);
-            if let Some(rest) = both.side(end.other()).label(far).map(|label| label.cost) {
-                let (from, to) = if end == End::Start { (near, far) } else { (far, near) };
-                both.bridges.push(Additive(total.saturating_add(rest)), Bridge { from, to, action, cost });
-            } else {
-                both.side(end).open.push(Additive(total), Way { near, far, action, cost });
+            let estimate = match end {
+                End::Start => self.graph.remaining(far),
+                End::Goal => self.graph.spent(far),
+            };
+            if estimate == DEAD_END {
+                continue;
             }
+            if let Some(Additive(rest)) = both.side(end.other()).labels.value(far) {
+                both.bridges.push(Additive(cost.saturating_add(rest)), Bridge { end, arrow, far });
+            }
+            both.side(end).push(cost.saturating_add(estimate), cost, Way { arrow, far });
         }
     }
 
-    fn certify_between(&mut self, from: StateId, action: &S::Action, to: StateId, floor: f64) -> Width {
-        self.graph.certified += 1;
-        let width = self.graph.space().certify(self.graph.state(from), action, self.graph.state(to), floor);
-        crate::graph::trusted(width, f64::INFINITY)
-    }
-
-    /// The path over a bridge.
-    fn joined(
-        &self,
-        both: &Both<S::Action>,
-        from: StateId,
-        (action, cost, width): (S::Action, u32, Width),
-        to: StateId,
-    ) -> PathOf<S> {
-        let step = |action: S::Action, to: StateId, cost: u32, width: Width| Step {
-            action,
-            to: self.graph.state(to).clone(),
-            cost,
-            width,
-        };
-        let mut steps = Vec::new();
-        let mut at = from;
-        while let Some((before, action, cost, width)) = both.via(End::Start, at) {
-            steps.push(step(action.clone(), at, *cost, *width));
-            at = *before;
-        }
-        steps.reverse();
-        steps.push(step(action, to, cost, width));
-        at = to;
-        while let Some((next, action, cost, width)) = both.via(End::Goal, at) {
-            steps.push(step(action.clone(), *next, *cost, *width));
-            at = *next;
-        }
-        Path::new(steps)
+    /// The path over a bridge, if all of it stands when it is as tight as it can be.
+    fn joined(&mut self, both: &Both, end: End, arrow: Arrow, far: StateId) -> Option<PathOf<S>> {
+        let (first, last) = if end == End::Start { (arrow.from, far) } else { (far, arrow.from) };
+        let [start, goal] = &both.sides;
+        let before = start.labels.way_to(first).into_iter().map(|arrow| (End::Start, arrow));
+        let after = goal.labels.way_to(last).into_iter().rev().map(|arrow| (End::Goal, arrow));
+        let way: Vec<(End, Arrow)> = before.chain([(end, arrow)]).chain(after).collect();
+        let stands = way.iter().all(|&(end, arrow)| self.all_stand(end, &[arrow], both.floor));
+        stands.then(|| Path::new(way.iter().map(|&(end, arrow)| self.step(end, arrow)).collect()))
     }
 }
 
@@ -212,61 +207,76 @@ impl End {
     }
 }
 
-impl<A> Side<A> {
+impl Side {
     fn new() -> Self {
-        Side { labels: Vec::new(), open: Queue::new() }
+        Side { labels: Tree::new(), open: Queue::new(), costs: BTreeMap::new(), opened: 0 }
     }
 
-    fn label(&self, id: StateId) -> Option<&Label<A>> {
-        self.labels.get(id as usize).and_then(Option::as_ref)
+    fn push(&mut self, estimate: u32, cost: u32, way: Way) {
+        self.open.push((Additive(estimate), cost), way);
+        *self.costs.entry(cost).or_default() += 1;
+        self.opened += 1;
     }
 
-    fn settle(&mut self, id: StateId, label: Label<A>) {
-        let index = id as usize;
-        if self.labels.len() <= index {
-            self.labels.resize_with(index + 1, || None);
+    /// Estimate, cost so far and way of the best that is open.
+    fn pop(&mut self) -> (Additive, u32, Way) {
+        let head = self.open.pop().expect("both sides have open ways");
+        let (estimate, cost) = head.priority;
+        let count = self.costs.get_mut(&cost).expect("open ways are counted");
+        *count -= 1;
+        if *count == 0 {
+            self.costs.remove(&cost);
         }
-        self.labels[index] = Some(label);
+        (estimate, cost, head.item)
     }
 
-    fn top(&self) -> Option<u32> {
-        self.open.peek().map(|head| head.priority.0)
+    /// Least estimate of the ways that are open.
+    fn estimate(&self) -> Option<u32> {
+        self.open.peek().map(|head| head.priority.0.0)
+    }
+
+    /// Least cost until the far end of a way that is open.
+    fn cost(&self) -> Option<u32> {
+        self.costs.first_key_value().map(|(&cost, _)| cost)
     }
 }
 
-impl<A> Both<A> {
-    fn side(&mut self, end: End) -> &mut Side<A> {
+impl Both {
+    fn new(floor: f64) -> Self {
+        let sides = [Side::new(), Side::new()];
+        Both { floor, sides, bridges: Queue::new(), undecided: u32::MAX, undecided_width: f64::NEG_INFINITY }
+    }
+
+    fn side(&mut self, end: End) -> &mut Side {
         &mut self.sides[end as usize]
     }
 
-    fn via(&self, end: End, id: StateId) -> Option<&(StateId, A, u32, Width)> {
-        self.sides[end as usize].label(id).and_then(|label| label.via.as_ref())
+    /// Whether a side has the least cost to a state: what is open costs as much already. Then every path through
+    /// it from a state that the other side has settled goes over a bridge that is known.
+    fn is_finished(&self, end: End, id: StateId) -> bool {
+        let side = &self.sides[end as usize];
+        side.labels.value(id).is_some_and(|Additive(cost)| side.cost().is_none_or(|open| cost <= open))
     }
 
-    /// Least cost of a path that no bridge is part of yet: it leaves what either side has settled by a way that is
-    /// open there. `u32::MAX` when there is none.
+    /// Least cost of a path that no bridge is part of yet: on either side one of its transitions is open, each with
+    /// all that the side has settled of the path behind it. `u32::MAX` when there is none.
     fn unseen(&self) -> u32 {
-        match [self.sides[0].top(), self.sides[1].top()] {
-            [Some(from_start), Some(from_goal)] => from_start.saturating_add(from_goal),
+        let [start, goal] = &self.sides;
+        match (start.estimate(), goal.estimate(), start.cost(), goal.cost()) {
+            (Some(a), Some(b), Some(from_start), Some(from_goal)) => a.max(b).max(from_start.saturating_add(from_goal)),
             _ => u32::MAX,
         }
     }
 
-    /// Lower bound on the cost between a state and the end of a side.
-    fn at_least_to(&self, end: End, id: StateId) -> u32 {
-        let side = &self.sides[end as usize];
-        side.label(id).map_or_else(|| side.top().unwrap_or(0), |label| label.cost)
-    }
-
     /// Books a transition that is not proved wide enough: paths over it cost at least `cost`.
-    fn note_undecided(&mut self, width: Width, floor: f64, cost: u32) {
-        if is_wide_enough(width.upper, floor) {
+    fn note_undecided(&mut self, width: Width, cost: u32) {
+        if is_wide_enough(width.upper, self.floor) {
             self.undecided = self.undecided.min(cost);
+            self.undecided_width = self.undecided_width.max(width.upper);
         }
     }
 
     fn bytes(&self) -> usize {
-        let side = |side: &Side<A>| side.labels.len() * size_of::<Option<Label<A>>>() + side.open.bytes();
-        self.sides.iter().map(side).sum::<usize>() + self.bridges.bytes()
+        self.sides.iter().map(|side| side.labels.bytes() + side.open.bytes()).sum::<usize>() + self.bridges.bytes()
     }
 }

@@ -2,7 +2,8 @@
 //! of the expanded ones, and certified widths. It does not know any search.
 
 use crate::registry::{Registry, StateId};
-use crate::space::{Space, Width};
+use crate::search::is_wide_enough;
+use crate::space::{Reversible, Space, Transition, Width};
 
 /// Number of the start.
 pub(crate) const START: StateId = 0;
@@ -10,7 +11,17 @@ pub(crate) const START: StateId = 0;
 /// Cost to a goal of a state that cannot reach one.
 pub(crate) const DEAD_END: u32 = u32::MAX;
 
-/// A transition, by its source and its place among the source's transitions.
+/// From which end of a path states are looked at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum End {
+    /// From the start, along transitions.
+    Start,
+    /// From the goals, against transitions.
+    Goal,
+}
+
+/// A transition, by its source and its place among the source's transitions; looked at from the goals, by its
+/// target and its place among the transitions into that.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Arrow {
     pub from: StateId,
@@ -20,6 +31,7 @@ pub(crate) struct Arrow {
 /// What is known of a transition.
 pub(crate) struct Edge<A> {
     pub action: A,
+    /// Where it leads to; from where it comes, looked at from the goals.
     pub to: StateId,
     pub cost: u32,
     /// Holds the width; before certification `[-inf, cheap bound]`.
@@ -29,13 +41,33 @@ pub(crate) struct Edge<A> {
 }
 
 impl<A> Edge<A> {
-    /// Whether certifying again at `floor` could teach anything.
-    fn is_decided(&self, floor: f64) -> bool {
+    fn new(action: A, to: StateId, cost: u32, width_at_most: f64) -> Self {
+        let width = Width { lower: f64::NEG_INFINITY, upper: upper_or_unknown(width_at_most) };
+        Edge { action, to, cost, width, tight: false }
+    }
+
+    /// Whether nothing is left to certify at `floor`.
+    fn is_certified(&self, floor: f64) -> bool {
         self.tight || self.width.upper < floor
+    }
+
+    /// Whether it is known to be wide enough, or not, or all that can be known.
+    fn is_decided(&self, floor: f64) -> bool {
+        self.is_certified(floor) || is_wide_enough(self.width.lower, floor)
+    }
+
+    /// Books an answer to a question about `floor`.
+    fn learn(&mut self, answer: Width, floor: f64, is_decision: bool) {
+        let Width { lower, upper } = trusted(answer, self.width.upper);
+        // What was proved before stays.
+        self.width = Width { lower: lower.max(self.width.lower).min(upper), upper };
+        let is_wide = is_decision && is_wide_enough(self.width.lower, floor);
+        let stopped = upper < floor || (is_wide && self.width.lower < upper);
+        self.tight = !stopped;
     }
 }
 
-/// Transitions out of a state, once it is expanded.
+/// Transitions out of a state, or into it, once it is expanded.
 type Edges<A> = Option<Box<[Edge<A>]>>;
 
 /// The explored part of a space.
@@ -45,6 +77,8 @@ pub(crate) struct Graph<'a, S: Space> {
     is_goal: Vec<bool>,
     remaining: Vec<u32>,
     edges: Vec<Edges<S::Action>>,
+    /// Transitions into states; empty unless the search is from both ends.
+    edges_into: Vec<Edges<S::Action>>,
     heap_bytes: usize,
     pub generated: u64,
     pub certified: u64,
@@ -58,6 +92,7 @@ impl<'a, S: Space> Graph<'a, S> {
             is_goal: Vec::new(),
             remaining: Vec::new(),
             edges: Vec::new(),
+            edges_into: Vec::new(),
             heap_bytes: 0,
             generated: 0,
             certified: 0,
@@ -89,12 +124,22 @@ impl<'a, S: Space> Graph<'a, S> {
     }
 
     pub fn edge(&self, arrow: Arrow) -> &Edge<S::Action> {
-        &self.successors(arrow.from)[arrow.index as usize]
+        self.edge_seen_from(End::Start, arrow)
+    }
+
+    pub fn edge_seen_from(&self, end: End, arrow: Arrow) -> &Edge<S::Action> {
+        &self.seen_from(end, arrow.from)[arrow.index as usize]
+    }
+
+    /// Transitions out of a state that has been expanded, or into it.
+    pub fn seen_from(&self, end: End, id: StateId) -> &[Edge<S::Action>] {
+        let edges = if end == End::Start { &self.edges } else { &self.edges_into };
+        edges[id as usize].as_ref().expect("arrows leave expanded states")
     }
 
     /// Transitions out of a state that has been expanded.
     pub fn successors(&self, from: StateId) -> &[Edge<S::Action>] {
-        self.edges[from as usize].as_ref().expect("arrows leave expanded states")
+        self.seen_from(End::Start, from)
     }
 
     /// Transitions out of a state, none if it has not been expanded.
@@ -111,35 +156,51 @@ impl<'a, S: Space> Graph<'a, S> {
     pub fn expand(&mut self, from: StateId) {
         if self.edges[from as usize].is_none() {
             let transitions = self.space.transitions(self.registry.state(from));
-            let edges: Box<[_]> = transitions
-                .into_iter()
-                .map(|transition| Edge {
-                    action: transition.action,
-                    to: self.intern(transition.to),
-                    cost: transition.cost,
-                    width: Width { lower: f64::NEG_INFINITY, upper: upper_or_unknown(transition.width_at_most) },
-                    tight: false,
-                })
-                .collect();
-            self.generated += edges.len() as u64;
-            self.heap_bytes += size_of_val(&*edges);
+            let edges = self.interned(transitions);
             self.edges[from as usize] = Some(edges);
         }
     }
 
+    fn interned(&mut self, transitions: Vec<Transition<S::State, S::Action>>) -> Box<[Edge<S::Action>]> {
+        let intern = |transition: Transition<S::State, S::Action>| {
+            let Transition { action, to, cost, width_at_most } = transition;
+            Edge::new(action, self.intern(to), cost, width_at_most)
+        };
+        let edges: Box<[_]> = transitions.into_iter().map(intern).collect();
+        self.generated += edges.len() as u64;
+        self.heap_bytes += size_of_val(&*edges);
+        edges
+    }
+
     /// Width of a transition, good enough to compare with `floor`.
     pub fn certify(&mut self, arrow: Arrow, floor: f64) -> Width {
-        let edge = self.edge(arrow);
-        if edge.is_decided(floor) {
-            return edge.width;
-        }
-        let (from, to) = (self.registry.state(arrow.from), self.registry.state(edge.to));
-        let answer = self.space.certify(from, &edge.action, to, floor);
-        self.certified += 1;
-        let edges = self.edges[arrow.from as usize].as_mut().expect("arrows leave expanded states");
+        self.ask(End::Start, arrow, floor, false)
+    }
+
+    /// Bounds on the width of a transition, on one side of `floor` if that can be told.
+    pub fn decide(&mut self, end: End, arrow: Arrow, floor: f64) -> Width {
+        self.ask(end, arrow, floor, true)
+    }
+
+    /// Width of a transition, as tight as it can be.
+    pub fn tighten(&mut self, end: End, arrow: Arrow) -> Width {
+        self.ask(end, arrow, f64::NEG_INFINITY, false)
+    }
+
+    fn ask(&mut self, end: End, arrow: Arrow, floor: f64, has_decided_only: bool) -> Width {
+        let edges = if end == End::Start { &mut self.edges } else { &mut self.edges_into };
+        let edges = edges[arrow.from as usize].as_mut().expect("arrows leave expanded states");
         let edge = &mut edges[arrow.index as usize];
-        edge.width = trusted(answer, edge.width.upper);
-        edge.tight = edge.width.upper >= floor;
+        let is_known = if has_decided_only { edge.is_decided(floor) } else { edge.is_certified(floor) };
+        if !is_known {
+            let [near, far] = [arrow.from, edge.to].map(|id| self.registry.state(id));
+            let (from, to) = if end == End::Start { (near, far) } else { (far, near) };
+            let decided = if has_decided_only { self.space.decide(from, &edge.action, to, floor) } else { None };
+            let is_decision = decided.is_some();
+            let answer = decided.unwrap_or_else(|| self.space.certify(from, &edge.action, to, floor));
+            self.certified += 1;
+            edge.learn(answer, floor, is_decision);
+        }
         edge.width
     }
 
@@ -150,7 +211,8 @@ impl<'a, S: Space> Graph<'a, S> {
     /// Approximate memory, in bytes.
     pub fn bytes(&self) -> usize {
         let columns = size_of::<bool>() + size_of::<u32>() + size_of::<Edges<S::Action>>();
-        self.heap_bytes + self.states() * (Registry::<S::State>::bytes_per_state() + columns)
+        let into = self.edges_into.len() * size_of::<Edges<S::Action>>();
+        self.heap_bytes + into + self.states() * (Registry::<S::State>::bytes_per_state() + columns)
     }
 
     /// The number of a state, new or not.
@@ -166,6 +228,24 @@ impl<'a, S: Space> Graph<'a, S> {
             self.edges.push(None);
         }
         id
+    }
+}
+
+impl<S: Reversible> Graph<'_, S> {
+    /// Generates the transitions into a state, once.
+    pub fn expand_into(&mut self, to: StateId) {
+        self.edges_into.resize_with(self.edges.len(), || None);
+        if self.edges_into[to as usize].is_none() {
+            let transitions = self.space.transitions_into(self.registry.state(to));
+            let edges = self.interned(transitions);
+            self.edges_into.resize_with(self.edges.len(), || None);
+            self.edges_into[to as usize] = Some(edges);
+        }
+    }
+
+    /// Admissible lower bound on the cost from the start, or [`DEAD_END`].
+    pub fn spent(&self, id: StateId) -> u32 {
+        if id == START { 0 } else { self.space.spent_cost(self.state(id)).unwrap_or(DEAD_END) }
     }
 }
 

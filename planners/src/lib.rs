@@ -11,9 +11,9 @@
 //! | --- | --- | --- |
 //! | [`Search::widest`] | largest width | lazy best-first with the max-min algebra |
 //! | [`Search::shortest`] | least cost with width at least a floor | lazy A*, re-opening |
-//! | [`Search::from_both_ends`] | the same, where goals are known | lazy bidirectional Dijkstra |
+//! | [`Search::from_both_ends`] | the same, where goals are known | lazy bidirectional A* |
 //! | [`Search::margin`] | largest width, then least cost | both, one after the other |
-//! | [`Search::anytime_margin`] | the same, with better and better paths before | greedy, then both in turns |
+//! | [`Search::anytime_margin`] | the same, with better and better paths before | greedy, then the cheapest for ever higher floors |
 //! | [`Search::k_best`] | the K cheapest with width at least a floor | Yen, with places up to the order of independent actions |
 //! | [`Search::ranked`] | the K widest, then cheapest | the same, in layers of width |
 //! | [`Search::pareto`] | the front of width against cost | shortest, again and again with a rising floor |

@@ -2,7 +2,7 @@
 
 use crate::algebra::Additive;
 use crate::budget::{Budget, Limit, Statistics};
-use crate::graph::{Arrow, Graph, START};
+use crate::graph::{Arrow, End, Graph, START};
 use crate::outcome::{Outcome, Path, Proof, Step};
 use crate::progress::{Monitor, Progress};
 use crate::space::Space;
@@ -46,6 +46,27 @@ pub struct Search<'a, S: Space> {
     /// Labels of the shortest-path engine, kept to reuse the memory.
     pub(crate) tree: Tree<Additive>,
     tolerance: f64,
+    /// When so many states have been expanded, a search pauses, as if the budget had ended.
+    pub(crate) pause_at: u64,
+    /// Whether the last search did so.
+    pub(crate) is_paused: bool,
+    /// What progress reports say of widths from the beginning.
+    pub(crate) known: Known,
+}
+
+/// What is known of widths before a search begins.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Known {
+    /// That of the path in hand.
+    pub width: Option<f64>,
+    /// No path is wider.
+    pub width_at_most: f64,
+}
+
+impl Default for Known {
+    fn default() -> Self {
+        Known { width: None, width_at_most: f64::INFINITY }
+    }
 }
 
 impl<'a, S: Space> Search<'a, S> {
@@ -56,6 +77,9 @@ impl<'a, S: Space> Search<'a, S> {
             monitor: Monitor::new(options.budget, options.report_every.max(1)),
             tree: Tree::new(),
             tolerance: options.tolerance,
+            pause_at: u64::MAX,
+            is_paused: false,
+            known: Known::default(),
         }
     }
 
@@ -104,29 +128,33 @@ impl<'a, S: Space> Search<'a, S> {
         statistics.bytes = statistics.bytes.max(bytes);
     }
 
-    /// Books one more decision, and reports if it is time; says which limit is exceeded.
+    /// Books one more decision, and reports if it is time; says which limit is exceeded, or that the search has used up
+    /// its share.
     pub(crate) fn tick(&mut self, open_bytes: usize) -> Option<Limit> {
         self.book(open_bytes);
-        self.monitor.tick()
+        let limit = self.monitor.tick();
+        self.is_paused = limit.is_none() && self.monitor.progress.statistics.expanded >= self.pause_at;
+        limit.or(self.is_paused.then_some(Limit::Expansions))
     }
 
     /// Starts the books of a new question.
     pub(crate) fn begin(&mut self) {
-        self.monitor.begin(self.graph.cap(), self.graph.remaining(START));
+        let Known { width, width_at_most } = self.known;
+        self.monitor.begin(self.graph.cap().min(width_at_most), self.graph.remaining(START));
+        self.monitor.progress.best_width = width;
     }
 
-    /// The path that a sequence of certified transitions makes.
-    pub(crate) fn path(&self, arrows: &[Arrow]) -> PathOf<S> {
-        let step = |&arrow: &Arrow| {
-            let edge = self.graph.edge(arrow);
-            Step {
-                action: edge.action.clone(),
-                to: self.graph.state(edge.to).clone(),
-                cost: edge.cost,
-                width: edge.width,
-            }
-        };
-        Path::new(arrows.iter().map(step).collect())
+    /// The path that a sequence of transitions makes, its widths as tight as they can be.
+    pub(crate) fn path(&mut self, arrows: &[Arrow]) -> PathOf<S> {
+        Path::new(arrows.iter().map(|&arrow| self.step(End::Start, arrow)).collect())
+    }
+
+    /// A transition of a path, its width as tight as it can be.
+    pub(crate) fn step(&mut self, end: End, arrow: Arrow) -> Step<S::State, S::Action> {
+        let width = self.graph.tighten(end, arrow);
+        let edge = self.graph.edge_seen_from(end, arrow);
+        let to = if end == End::Start { edge.to } else { arrow.from };
+        Step { action: edge.action.clone(), to: self.graph.state(to).clone(), cost: edge.cost, width }
     }
 
     /// What the bounds prove about a path, or about nothing found.

@@ -2,7 +2,7 @@
 
 use crate::algebra::{Additive, PathValue};
 use crate::budget::Limit;
-use crate::graph::{Arrow, DEAD_END, START};
+use crate::graph::{Arrow, DEAD_END, End, START};
 use crate::outcome::Outcome;
 use crate::progress::Pass;
 use crate::queue::Queue;
@@ -33,8 +33,6 @@ pub(crate) struct Task<'t> {
     /// How much the bound on the remaining cost counts, at least 1. Above 1 a path is found after fewer
     /// expansions and costs at most so many times the least.
     pub greed: u32,
-    /// Give up when so many states have been expanded, as if the budget had ended.
-    pub pause_at: u64,
     /// States that the rest may not visit.
     pub avoid: &'t [StateId],
     /// Transitions out of `from` that the rest may not begin with.
@@ -46,8 +44,7 @@ pub(crate) struct Task<'t> {
 impl Task<'_> {
     /// All paths from the start.
     pub fn whole(floor: f64, below: u32) -> Self {
-        let (greed, pause_at) = (1, u64::MAX);
-        Task { from: START, spent: 0, floor, below, greed, pause_at, avoid: &[], forbid: &[], held_bytes: 0 }
+        Task { from: START, spent: 0, floor, below, greed: 1, avoid: &[], forbid: &[], held_bytes: 0 }
     }
 
     fn is_whole(&self) -> bool {
@@ -95,9 +92,20 @@ impl<S: Space> Search<'_, S> {
 
     /// The search; finding nothing without a limit is a proof that there is nothing.
     pub(crate) fn run_shortest(&mut self, task: &Task<'_>) -> ShortestRun {
-        let run = self.a_star(task);
-        self.book(self.tree.bytes() + task.held_bytes);
-        run
+        loop {
+            let run = self.a_star(task);
+            self.book(self.tree.bytes() + task.held_bytes);
+            // What was decided has to stand when it is looked at closely.
+            let arrows = run.best.as_deref().unwrap_or_default();
+            if self.all_stand(End::Start, arrows, task.floor) {
+                return run;
+            }
+        }
+    }
+
+    /// Whether transitions that were decided to be wide enough are so when they are as tight as they can be.
+    pub(crate) fn all_stand(&mut self, end: End, arrows: &[Arrow], floor: f64) -> bool {
+        arrows.iter().all(|&arrow| is_wide_enough(self.graph.tighten(end, arrow).lower, floor))
     }
 
     fn a_star(&mut self, task: &Task<'_>) -> ShortestRun {
@@ -127,12 +135,10 @@ impl<S: Space> Search<'_, S> {
             if task.is_whole() {
                 self.monitor.progress.cost_at_least = cost_at_least;
             }
-            let limit = self.tick(open.bytes() + self.tree.bytes() + task.held_bytes);
-            let paused = self.monitor.progress.statistics.expanded >= task.pause_at;
-            if let Some(limit) = limit.or(paused.then_some(Limit::Expansions)) {
+            if let Some(limit) = self.tick(open.bytes() + self.tree.bytes() + task.held_bytes) {
                 return ShortestRun { best: None, limit: Some(limit), cost_at_least };
             }
-            let width = self.graph.certify(arrow, task.floor);
+            let width = self.graph.decide(End::Start, arrow, task.floor);
             if !is_wide_enough(width.lower, task.floor) {
                 if is_wide_enough(width.upper, task.floor) {
                     undecided = undecided.min(estimate);

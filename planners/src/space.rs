@@ -55,9 +55,8 @@ pub struct Transition<S, A> {
 ///
 /// An engine keeps the transitions of every state that it expands, and their
 /// certified widths, so a domain needs no cache against repeated calls: for one
-/// state `transitions` is called at most once, and `certify` is called again
-/// for one transition only if an early stop below a high `floor` left it
-/// undecided at a lower one.
+/// state `transitions` is called at most once, and `certify` or `decide` is called again
+/// for one transition only if an early stop left it undecided at another `floor`.
 pub trait Space: Sync {
     /// A node. Equal states are the same node.
     type State: Clone + Eq + Hash + Send + Sync;
@@ -78,6 +77,14 @@ pub trait Space: Sync {
     /// as `upper < floor` is proved; at or above it the interval is as tight as
     /// the domain can make it. `floor` is `NEG_INFINITY` when any width is of use.
     fn certify(&self, from: &Self::State, action: &Self::Action, to: &Self::State, floor: f64) -> Width;
+
+    /// Whether the width of a transition is at least `floor`: like [`certify`](Space::certify), but at or above the floor
+    /// too it may stop as soon as that is proved. What can be decided neither way is as tight as the domain can
+    /// make it. `None` where that would be no cheaper than to certify. No search orders by what it returns.
+    fn decide(&self, from: &Self::State, action: &Self::Action, to: &Self::State, floor: f64) -> Option<Width> {
+        let _ = (from, action, to, floor);
+        None
+    }
 
     /// Admissible lower bound on the cost from `state` to a goal; `None` when
     /// it is proved that no goal can be reached from it. It may be
@@ -111,4 +118,11 @@ pub trait Reversible: Space {
     /// of them names in `to`, which here is where it comes **from**. The action is what leads from there to
     /// `state`, and is certified as such; it may be another value for the same transition than `transitions` gives.
     fn transitions_into(&self, state: &Self::State) -> Vec<Transition<Self::State, Self::Action>>;
+
+    /// Admissible lower bound on the cost from the start to `state`; `None` when it is proved that it cannot be
+    /// reached. It may be inconsistent.
+    fn spent_cost(&self, state: &Self::State) -> Option<u32> {
+        let _ = state;
+        Some(0)
+    }
 }

@@ -28,6 +28,8 @@ pub struct Toy<A> {
     pub arcs: Vec<Vec<Arc<A>>>,
     /// The heuristic: what [`Space::remaining_cost`] says about each node.
     pub remaining: Vec<Option<u32>>,
+    /// The heuristic from the other end: what [`Reversible::spent_cost`] says about each node.
+    pub spent: Vec<Option<u32>>,
     /// What [`Space::width_at_most`] says.
     pub width_at_most: f64,
 }
@@ -40,6 +42,7 @@ impl<A> Toy<A> {
             is_goal: (0..nodes).map(|node| goals.contains(&node)).collect(),
             arcs: (0..nodes).map(|_| Vec::new()).collect(),
             remaining: vec![Some(0); nodes],
+            spent: vec![Some(0); nodes],
             width_at_most: f64::INFINITY,
         }
     }
@@ -87,6 +90,13 @@ impl<A: Clone + PartialEq + Send + Sync> Space for Toy<A> {
         }
     }
 
+    /// Which side of the floor the width is on; above it, the interval is `[floor, inf]`.
+    fn decide(&self, from: &usize, action: &A, to: &usize, floor: f64) -> Option<Width> {
+        let width = self.certify(from, action, to, floor);
+        let is_wide = width.lower > floor && floor > f64::NEG_INFINITY;
+        Some(if is_wide { Width { lower: floor, upper: f64::INFINITY } } else { width })
+    }
+
     fn remaining_cost(&self, &state: &usize) -> Option<u32> {
         self.remaining[state]
     }
@@ -112,5 +122,9 @@ impl<A: Clone + PartialEq + Send + Sync> Reversible for Toy<A> {
             })
         };
         (0..self.arcs.len()).flat_map(into).collect()
+    }
+
+    fn spent_cost(&self, &state: &usize) -> Option<u32> {
+        self.spent[state]
     }
 }

@@ -61,19 +61,19 @@ impl<S: Space> Search<'_, S> {
     /// The search; finding nothing without a limit is a proof of impossibility.
     pub(crate) fn run_widest(&mut self, floor: f64) -> WidestRun {
         self.monitor.progress.pass = Pass::Widest;
-        let mut engine = Widest::new(floor, self.graph.cap());
-        let run = engine.run(self, u64::MAX).expect("a search without a pause ends");
+        let cap = self.graph.cap();
+        let mut engine =
+            Widest { floor, tree: Tree::new(), open: Queue::new(), brackets: Brackets::new(cap), best: None, cap };
+        let run = engine.run(self);
         self.book(engine.bytes());
         self.monitor.report();
         run
     }
 }
 
-/// State of one search, which can pause.
-pub(crate) struct Widest {
-    /// Narrower paths are of no use.
+/// State of one search.
+struct Widest {
     floor: f64,
-    is_begun: bool,
     /// Closed states with their widths.
     tree: Tree<Bottleneck>,
     open: Queue<Priority, Way>,
@@ -85,52 +85,25 @@ pub(crate) struct Widest {
 }
 
 impl Widest {
-    /// A search among paths at least as wide as `floor`; none is wider than `cap`.
-    pub fn new(floor: f64, cap: f64) -> Self {
-        let (tree, open, brackets) = (Tree::new(), Queue::new(), Brackets::new(cap));
-        Widest { floor, is_begun: false, tree, open, brackets, best: None, cap }
-    }
-
-    /// From now on only paths at least as wide as this are of use.
-    pub fn raise(&mut self, floor: f64) {
-        self.floor = floor;
-        self.best = self.best.filter(|(best, _)| is_wide_enough(best.width(), floor));
-    }
-
-    /// The least width that is of use.
-    pub fn floor(&self) -> f64 {
-        self.floor
-    }
-
-    /// Searches on; `None` when it pauses because so many states have been expanded.
-    pub fn run<S: Space>(&mut self, search: &mut Search<'_, S>, pause_at: u64) -> Option<WidestRun> {
+    fn run<S: Space>(&mut self, search: &mut Search<'_, S>) -> WidestRun {
+        self.tree.settle(START, Bottleneck::IDENTITY, None);
         if search.graph.is_goal(START) {
-            return Some(WidestRun { best: Some(Vec::new()), limit: None, width_at_most: f64::INFINITY });
+            let best = Some(Vec::new());
+            return WidestRun { best, limit: None, width_at_most: f64::INFINITY };
         }
-        if !self.is_begun {
-            self.is_begun = true;
-            self.tree.settle(START, Bottleneck::IDENTITY, None);
-            if search.graph.remaining(START) != DEAD_END {
-                self.expand(search, START);
-            }
+        if search.graph.remaining(START) != DEAD_END {
+            self.expand(search, START);
         }
 
-        loop {
-            if search.monitor.progress.statistics.expanded >= pause_at {
-                return None;
-            }
-            let Some(mut head) = self.open.pop() else { break };
+        while let Some(mut head) = self.open.pop() {
             let Way { arrow, to, certified } = head.item;
             if self.tree.value(to).is_some() {
                 continue;
             }
             let (mut value, near) = head.priority;
-            if !self.is_wide_enough(value) {
-                break;
-            }
             search.monitor.progress.width_at_most = self.brackets.width_at_most(value.width());
             if let Some(limit) = search.tick(self.bytes()) {
-                return Some(self.end(search, value.width(), Some(limit)));
+                return self.end(search, value.width(), Some(limit));
             }
             let is_goal = search.graph.is_goal(to);
             if !certified {
@@ -150,12 +123,12 @@ impl Widest {
                 }
             }
             if is_goal {
-                return Some(self.end(search, value.width(), None));
+                return self.end(search, value.width(), None);
             }
             self.tree.settle(to, value, Some(arrow));
             self.expand(search, to);
         }
-        Some(self.end(search, self.floor.next_down(), None))
+        self.end(search, self.floor.next_down(), None)
     }
 
     /// Value of a way with its last transition certified.
@@ -207,7 +180,7 @@ impl Widest {
         is_wide_enough(value.width(), self.floor)
     }
 
-    pub fn bytes(&self) -> usize {
+    fn bytes(&self) -> usize {
         self.open.bytes() + self.tree.bytes() + self.brackets.bytes()
     }
 }

@@ -5,7 +5,8 @@ use super::diagnostics::{Diagnostic, Diagnostics};
 use super::document::{LARGEST_FILE, SourceFile};
 use super::excerpt::excerpt;
 use super::form::Form;
-use super::json::{self, Member, Node, Span};
+use super::json::{self, Fault, Member, Node, Span};
+use super::tables;
 
 /// Most problems that are kept; what is found beyond them is not shown.
 const MOST: usize = 50;
@@ -58,6 +59,37 @@ impl Findings {
         Some(document)
     }
 
+    /// Parses a file that is written in TOML.
+    pub(super) fn open_tables<'a>(&mut self, file: &'a SourceFile) -> Option<Document<'a>> {
+        let (name, text) = self.text(file)?;
+        let (root, faults) = tables::parse(text);
+        self.faults(name, text, faults, 0);
+        Some(Document { name, text, root: root?, form: Form::Tables })
+    }
+
+    /// Parses the lines of a file, each of which is a document of its own. What follows the last line feed is not looked
+    /// at.
+    pub(super) fn open_lines<'a>(&mut self, file: &'a SourceFile) -> Option<Vec<Document<'a>>> {
+        let (name, text) = self.text(file)?;
+        let mut documents = Vec::new();
+        let mut from = 0;
+        for line in text.split_inclusive('\n').filter(|line| line.ends_with('\n')) {
+            let (root, faults) = json::parse(line);
+            self.faults(name, text, faults, from);
+            let document = |root: Node| Document { name, text, root: root.moved_by(from), form: Form::Own };
+            documents.extend(root.map(document));
+            from += line.len();
+        }
+        Some(documents)
+    }
+
+    /// Adds what a parser found, in a part of a text that begins after so many bytes.
+    fn faults(&mut self, name: &str, text: &str, faults: Vec<Fault>, after: usize) {
+        for Fault { span, code, message, hint } in faults {
+            self.push(name, text, span.moved_by(after), code, String::new(), message, hint);
+        }
+    }
+
     /// The text of a file, with its name.
     fn text<'a>(&mut self, file: &'a SourceFile) -> Option<(&'a str, &'a str)> {
         let name = file.name.as_str();
@@ -85,9 +117,7 @@ impl Findings {
 
     fn json<'a>(&mut self, name: &'a str, text: &'a str) -> Option<Document<'a>> {
         let (root, faults) = json::parse(text);
-        for fault in faults {
-            self.push(name, text, fault.span, fault.code, String::new(), fault.message, fault.hint);
-        }
+        self.faults(name, text, faults, 0);
         Some(Document { name, text, root: root?, form: Form::Own })
     }
 
@@ -140,7 +170,7 @@ impl Findings {
     pub(super) fn add_at(&mut self, place: &Place<'_>, span: Span, code: Code, message: String, hint: Option<String>) {
         let message = if place.path.is_empty() { message } else { format!("`{}`: {message}", place.path) };
         let message = match place.document.form {
-            Form::Own => message,
+            Form::Own | Form::Tables => message,
             form => format!("{message} (read as {})", form.name()),
         };
         self.push(place.document.name, place.document.text, span, code, place.path.clone(), message, hint);
@@ -273,6 +303,14 @@ impl<'a> Place<'a> {
     /// Its path within the document, e.g. `modules[3].id`; empty for the whole.
     pub(super) fn path(&self) -> &str {
         &self.path
+    }
+
+    /// How a file of this form says which format it has.
+    pub(super) fn opening(&self, wanted: &str) -> String {
+        match self.document.form {
+            Form::Tables => format!("the file starts with format = {wanted}"),
+            _ => format!("the file starts with \"format\": {wanted}"),
+        }
     }
 
     /// Name of the file.

@@ -7,6 +7,8 @@ use super::json::{Node, Value};
 pub enum Form {
     /// A format of this program, by its `format`.
     Own,
+    /// A format of this program that is written in TOML.
+    Tables,
     /// A JSON world: modules, the joints between them, and where they are.
     RofiWorld,
     /// Text: a line for every module (`M`) and every joint (`E`).
@@ -20,6 +22,7 @@ impl Form {
     pub fn name(self) -> &'static str {
         match self {
             Self::Own => "this program's own format",
+            Self::Tables => "TOML",
             Self::RofiWorld => "a RoFI world",
             Self::RofiText => "RoFI text",
             Self::RofiVoxels => "RoFI voxels",

@@ -22,11 +22,13 @@ mod form;
 mod json;
 mod layout;
 mod load_range_report;
+mod partial_order_report;
 mod plan_document;
 mod read;
 mod rofi;
 mod schema;
 mod suggest;
+mod tables;
 mod turn;
 mod wire;
 mod write;
@@ -41,14 +43,17 @@ pub use document::{
 };
 pub use form::Form;
 pub use load_range_report::LoadRangeReport;
+pub use partial_order_report::PartialOrderReport;
 pub use plan_document::{Contradiction, LinkagePlanDocument, PlanDocument};
 pub use read::{
-    read_catalogue, read_certificate, read_checkable, read_configuration, read_linkage, read_linkage_plan, read_plan,
-    read_problem, read_structure, read_verifiable,
+    Message, Results, read_catalogue, read_certificate, read_checkable, read_configuration, read_linkage,
+    read_linkage_plan, read_message, read_plan, read_problem, read_results, read_structure, read_suite,
+    read_verifiable,
 };
 pub use schema::{schema, schema_names};
 pub use turn::AxisAngle;
 pub use write::{
-    Unwritable, in_space_because, write_catalogue, write_certificate, write_check, write_configuration, write_linkage,
-    write_linkage_plan, write_load_range, write_plan, write_rofi, write_structure,
+    Unwritable, in_space_because, write_catalogue, write_certificate, write_check, write_configuration, write_goal,
+    write_linkage, write_linkage_goal, write_linkage_plan, write_load_range, write_partial_order, write_plan,
+    write_point, write_result, write_rofi, write_structure,
 };

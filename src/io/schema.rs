@@ -1,5 +1,5 @@
 //! JSON Schemas, made from the wire types: for users' editors, and for
-//! checking every file before it is decoded.
+//! checking every file before it is decoded. A suite is written in TOML, which has the same values.
 
 use std::sync::LazyLock;
 
@@ -9,20 +9,23 @@ use serde_json::Value;
 use super::{layout, wire};
 
 /// The formats that have a schema.
-const NAMES: [&str; 10] = [
+const NAMES: [&str; 13] = [
     "structure",
     "catalogue",
     "configuration",
     "plan",
     "check",
     "load-range",
+    "partial-order",
     "certificate",
+    "suite",
+    "result",
     "errors",
     "rofi-world",
     "rofi-voxels",
 ];
 
-static SCHEMAS: LazyLock<[Value; 10]> = LazyLock::new(|| {
+static SCHEMAS: LazyLock<[Value; 13]> = LazyLock::new(|| {
     [
         generate::<wire::Structure>(),
         generate::<wire::Catalogue>(),
@@ -30,7 +33,10 @@ static SCHEMAS: LazyLock<[Value; 10]> = LazyLock::new(|| {
         generate::<wire::Plan>(),
         generate::<wire::Check>(),
         generate::<wire::LoadRange>(),
+        generate::<wire::PartialOrder>(),
         generate::<wire::Certificate>(),
+        generate::<wire::Suite>(),
+        generate::<wire::JobResult>(),
         generate::<wire::Errors>(),
         generate::<wire::RofiWorld>(),
         generate::<wire::VoxelWorld>(),

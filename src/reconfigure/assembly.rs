@@ -27,6 +27,23 @@ pub struct Transient<'a> {
     pub engaged: &'a [Engagement],
 }
 
+/// A robot at one moment, with any number of modules on their way at once.
+#[derive(Clone, Copy, Debug)]
+pub struct Moment<'a> {
+    /// Where each module is; those of moving modules are not used.
+    pub placements: &'a [Placement],
+    /// The modules on their way.
+    pub moving: &'a [Moving],
+    /// What holds the modules together.
+    pub engaged: &'a [Engagement],
+}
+
+impl<'a> From<&'a Transient<'a>> for Moment<'a> {
+    fn from(state: &'a Transient<'a>) -> Self {
+        Self { placements: state.placements, moving: state.moving.as_slice(), engaged: state.engaged }
+    }
+}
+
 /// A module that is anywhere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moving {
@@ -158,6 +175,14 @@ impl<'a> Assembler<'a> {
     /// Two fixed modules carry no contact between them, nor does a fixed module
     /// with its environment.
     pub fn assemble(&self, state: &Transient) -> Assembly {
+        self.assemble_moment(&state.into())
+    }
+
+    /// The structure of a state with any number of modules on their way, as [`Self::assemble`] makes it of one.
+    ///
+    /// Two modules on their way carry no contact between them. With it the structure would be no weaker, since
+    /// another contact never is a loss.
+    pub fn assemble_moment(&self, state: &Moment) -> Assembly {
         let mut assembly = Assembly {
             structure: Structure {
                 gravity: self.configuration.gravity,
@@ -180,11 +205,9 @@ impl<'a> Assembler<'a> {
         assembly
     }
 
-    fn pose(&self, state: &Transient, module: usize) -> Pose {
-        match &state.moving {
-            Some(moving) if moving.module == module => moving.pose,
-            _ => state.placements[module].pose(self.pitch),
-        }
+    fn pose(&self, state: &Moment, module: usize) -> Pose {
+        let moving = state.moving.iter().find(|moving| moving.module == module);
+        moving.map_or_else(|| state.placements[module].pose(self.pitch), |moving| moving.pose)
     }
 
     fn add_bodies(&self, assembly: &mut Assembly, poses: &[Pose]) {
@@ -224,7 +247,7 @@ impl<'a> Assembler<'a> {
         Some(Connection { parent: Anchor::Body(parent), child: Anchor::Body(child), connector, frame })
     }
 
-    fn add_module_contacts(&self, assembly: &mut Assembly, state: &Transient, poses: &[Pose]) {
+    fn add_module_contacts(&self, assembly: &mut Assembly, state: &Moment, poses: &[Pose]) {
         let mut held: Vec<[usize; 2]> = Vec::with_capacity(state.engaged.len());
         for &index in &assembly.connections {
             if let Engagement::Face { modules: [a, b], .. } = state.engaged[index]
@@ -236,8 +259,8 @@ impl<'a> Assembler<'a> {
         held.sort_unstable();
         let carries = |a: usize, b: usize| !self.both_fixed(a, b) && held.binary_search(&[a.min(b), a.max(b)]).is_err();
 
-        let moving = state.moving.map(|m| m.module);
-        let resting = state.placements.iter().enumerate().filter(|(m, _)| Some(*m) != moving);
+        let is_moving = |m: usize| state.moving.iter().any(|moving| moving.module == m);
+        let resting = state.placements.iter().enumerate().filter(|(m, _)| !is_moving(*m));
         let occupancy = Occupancy::new(resting.map(|(m, placement)| (placement.cell, m)));
         for (a, towards, b) in occupancy.touching_pairs() {
             if carries(a, b) {
@@ -249,17 +272,18 @@ impl<'a> Assembler<'a> {
             }
         }
 
-        let Some(m) = moving else { return };
-        let solid = self.solid(m, poses);
         // Beyond the diagonal of a cube nothing can touch.
         let near = 1.8 * self.pitch;
-        for (_, other) in occupancy.iter() {
-            if (centre(poses, other) - centre(poses, m)).amax() > near || !carries(m, other) {
-                continue;
-            }
-            if let Some(mut patch) = contact(&solid, &self.solid(other, poses), TOUCH * self.pitch) {
-                self.surface(m, other).shrink(&mut patch.points);
-                self.add_pair(assembly, m, other, patch);
+        for m in state.moving.iter().map(|moving| moving.module) {
+            let solid = self.solid(m, poses);
+            for (_, other) in occupancy.iter() {
+                if (centre(poses, other) - centre(poses, m)).amax() > near || !carries(m, other) {
+                    continue;
+                }
+                if let Some(mut patch) = contact(&solid, &self.solid(other, poses), TOUCH * self.pitch) {
+                    self.surface(m, other).shrink(&mut patch.points);
+                    self.add_pair(assembly, m, other, patch);
+                }
             }
         }
     }

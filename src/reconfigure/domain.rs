@@ -14,6 +14,7 @@ use super::local::{Memo, Neighbourhood, plane};
 use super::moves::Move;
 use super::oracle::{Oracle, Worst};
 use super::problem::Problem;
+use super::recollection::Recollection;
 use super::ways::fitting;
 
 /// A problem with everything that answers questions about its states.
@@ -25,11 +26,18 @@ pub struct Domain<'a> {
     /// Whether states must be stable at all.
     pub stability: bool,
     surroundings: Surroundings,
+    off_limits: Surroundings,
+    /// Cells of modules that may not move; no other module ever comes there.
+    stay: Vec<Cell>,
     pitch: f64,
-    /// Whether a module of this type does not hit ground or obstacles.
+    /// Whether a module of this type hits neither ground nor obstacles, and passes no forbidden region.
     clear: Memo<(Move, usize), bool>,
     /// Margins at rest.
     at_rest: Memo<(Layout, Vec<Bond>), Worst>,
+    /// Bounds on margins at rest.
+    pub(super) bounds: Memo<(Layout, Vec<Bond>), Worst>,
+    /// What states at rest left for their neighbours.
+    pub(super) recollection: Recollection,
     /// Bounds on the margins of rotations.
     at_most: Memo<Neighbourhood, f64>,
 }
@@ -43,9 +51,13 @@ impl<'a> Domain<'a> {
             oracle: Oracle::new(start),
             stability,
             surroundings: Surroundings::new(&start.environment),
+            off_limits: Surroundings::new(&start.require.off_limits()),
+            stay: start.require.stay.iter().map(|&module| start.modules[module].placement.cell).collect(),
             pitch: start.pitch(),
             clear: Memo::new(),
             at_rest: Memo::new(),
+            bounds: Memo::new(),
+            recollection: Recollection::default(),
             at_most: Memo::new(),
         }
     }
@@ -56,14 +68,15 @@ impl<'a> Domain<'a> {
         // Every module of a lattice has about two connections of its own, and a pivot a handful of neighbours.
         let at_rest = modules * (size_of::<Placed>() + 2 * size_of::<Bond>());
         let at_most = 8 * size_of::<(Cell, usize)>();
-        self.clear.bytes(0) + self.at_rest.bytes(at_rest) + self.at_most.bytes(at_most)
+        let at_rest = self.at_rest.bytes(at_rest) + self.bounds.bytes(at_rest);
+        self.clear.bytes(0) + at_rest + self.at_most.bytes(at_most) + self.recollection.bytes()
     }
 
-    /// The moves that fit among the modules and hit neither ground nor
-    /// obstacles, in a fixed order, whatever is engaged.
+    /// The moves that fit among the modules, hit neither ground nor obstacles and are
+    /// not forbidden, in a fixed order, whatever is engaged.
     pub fn moves(&self, layout: &Layout) -> Vec<Move> {
         let mut moves = fitting(layout, |class| self.problem.ability(class));
-        moves.retain(|&step| self.is_clear(layout, step));
+        moves.retain(|&step| !self.stay.contains(&step.from) && self.is_clear(layout, step));
         moves
     }
 
@@ -74,7 +87,8 @@ impl<'a> Domain<'a> {
             let shape = self.problem.start().catalogue.module_types[module_type].body().shape.clone();
             // A cube sweeps the same room in every orientation.
             let solid = Solid::new(shape, Placement::new(step.from).pose(self.pitch));
-            self.surroundings.first_collision(&solid, &motion(step, self.pitch)).is_none()
+            let motion = motion(step, self.pitch);
+            [&self.surroundings, &self.off_limits].iter().all(|part| part.first_collision(&solid, &motion).is_none())
         })
     }
 

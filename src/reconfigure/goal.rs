@@ -153,6 +153,10 @@ fn check_free_frame(start: &Configuration) -> Result<(), Refusal> {
         "there are obstacles"
     } else if start.modules.iter().any(|module| module.fixed) {
         "some modules are fixed"
+    } else if !start.require.stay.is_empty() {
+        "some modules may not move"
+    } else if !start.require.keep_out.is_empty() {
+        "there are forbidden regions"
     } else if start.gravity.x != 0.0 || start.gravity.y != 0.0 {
         "gravity is not vertical"
     } else {
@@ -208,6 +212,13 @@ fn goal_classes(
             }
             let module_type = start.module_type(index).name.clone();
             return Err(Impossible::ModulesDiffer { module_type, start: present, goal: counts[class] }.into());
+        }
+    }
+    for &stays in &start.require.stay {
+        let cell = start.modules[stays].placement.cell;
+        let mut there = goal.configuration.modules.iter().zip(&wanted).filter(|(m, _)| m.placement.cell == cell);
+        if !there.any(|(_, &class)| class == class_of[stays]) {
+            return Err(Impossible::FixedModule { module: start.modules[stays].id.clone() }.into());
         }
     }
     Ok(wanted)

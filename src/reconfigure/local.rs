@@ -88,6 +88,16 @@ impl<K: Eq + Hash, V: Copy> Memo<K, V> {
         answer
     }
 
+    /// The answer to `key`, if there is one.
+    pub fn known(&self, key: &K) -> Option<V> {
+        self.0.lock().expect("no thread panics while it holds the answers").get(key).copied()
+    }
+
+    /// Replaces the answer to `key`.
+    pub fn set(&self, key: K, answer: V) {
+        self.0.lock().expect("no thread panics while it holds the answers").insert(key, answer);
+    }
+
     /// Approximate memory in bytes, where a key owns so much heap.
     pub fn bytes(&self, heap_of_key: usize) -> usize {
         let known = self.0.lock().expect("no thread panics while it holds the answers");

@@ -12,6 +12,8 @@ mod assembly_laws;
 mod assembly_tests;
 mod compose;
 mod course;
+mod decides;
+mod decision;
 mod domain;
 mod engines;
 mod goal;
@@ -24,9 +26,11 @@ mod local;
 mod moves;
 mod options;
 mod oracle;
+pub mod partial_order;
 mod plan;
 mod primitive;
 mod problem;
+mod recollection;
 mod refusal;
 pub mod replay;
 mod sampling;
@@ -36,6 +40,7 @@ mod step;
 mod stronger;
 mod surface;
 mod trace;
+mod wander;
 mod ways;
 mod worst;
 
@@ -52,6 +57,7 @@ pub use plan::{
 pub use refusal::{Impossible, Refusal, Which};
 pub use solve::solve;
 pub use step::Step;
+pub use wander::{Walk, wander};
 pub use ways::{Ability, Way, fitting};
 
 #[cfg(test)]

@@ -7,10 +7,13 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::robot::{Cell, Configuration, Face, Occupancy, Placement};
-use crate::statics::{Bracket, InvalidStructure, Question, assess};
+use crate::statics::{
+    Assessment, Bracket, InvalidStructure, Memory, NotNear, Question, Tally, assess, assess_keeping, assess_near,
+};
 
 use super::assembly::{Assembler, Assembly, Engagement, Transient};
 use super::course::{Course, engagement};
+use super::decision::{self, Wanted};
 use super::layout::Bond;
 use super::moves::Move;
 use super::sampling;
@@ -35,6 +38,7 @@ pub struct Oracle<'a> {
     assembler: Assembler<'a>,
     pitch: f64,
     solves: AtomicU64,
+    tally: Mutex<Tally>,
     fault: Mutex<Option<Vec<InvalidStructure>>>,
 }
 
@@ -45,6 +49,7 @@ impl<'a> Oracle<'a> {
             assembler: Assembler::new(configuration),
             pitch: configuration.pitch(),
             solves: AtomicU64::new(0),
+            tally: Mutex::new(Tally::default()),
             fault: Mutex::new(None),
         }
     }
@@ -52,6 +57,11 @@ impl<'a> Oracle<'a> {
     /// Structures assessed so far.
     pub fn solves(&self) -> u64 {
         self.solves.load(Ordering::Relaxed)
+    }
+
+    /// What it took to assess them.
+    pub fn tally(&self) -> Tally {
+        *self.tally.lock().expect("no thread panics while it counts")
     }
 
     /// What the oracle found wrong with a structure, if it ever did. The margin
@@ -99,23 +109,104 @@ impl<'a> Oracle<'a> {
         margins.fold(f64::INFINITY, f64::min)
     }
 
+    /// Whether the margin at rest is at least `floor`, with these placements and connections, and what neighbouring states
+    /// can use of the answer. `near` is what was left by one: its memory, and which of its modules each one was.
+    pub fn decides_state(
+        &self,
+        placements: &[Placement],
+        bonds: &[Bond],
+        floor: f64,
+        near: Option<(&Memory, &[Option<usize>])>,
+    ) -> (Worst, Option<Memory>) {
+        let occupancy = Occupancy::of_placements(placements);
+        let engaged: Vec<_> = bonds.iter().filter_map(|&bond| engagement(&occupancy, bond)).collect();
+        let state = Transient { placements, moving: None, engaged: &engaged };
+        self.ask_near(&state, Instant::Rest, Wanted::AtLeast(floor), near)
+    }
+
+    /// Whether the margin of the transient states of a move is at least `floor`: like
+    /// [`of_move`](Self::of_move), of the same states, but known no better than that takes. `near` is the memory of a
+    /// state at rest with the same placements.
+    pub fn decides_move(
+        &self,
+        before: Vec<Placement>,
+        bonds: &[Bond],
+        step: Move,
+        floor: f64,
+        near: Option<&Memory>,
+    ) -> Worst {
+        let same: Vec<Option<usize>> = (0..before.len()).map(Some).collect();
+        let course = Course::new(before, bonds, step, self.pitch).expect("a legal move has a module and a support");
+        let sampling = sampling::of(step);
+        let ask = |phase: f64, wanted: Wanted, near: Option<&Memory>| {
+            let near = near.map(|memory| (memory, same.as_slice()));
+            self.ask_near(&course.at(phase), Instant::Phase(phase), wanted, near)
+        };
+        let first = sampling.initial_phases().next().expect("a move has samples");
+        let (decided, memory) = ask(first, Wanted::AtLeast(floor), near);
+        if decided.is_out(floor) {
+            return decided.cut_short();
+        }
+        // All others have this one as their neighbour, so that they can be looked at in any order.
+        let memory = memory.as_ref();
+        let worst = ask(first, Wanted::Value, memory).0;
+        if worst.is_out(floor) {
+            return worst.cut_short();
+        }
+        let ask = |phase: f64, wanted: Wanted| ask(phase, wanted, memory).0;
+        decision::of_course(sampling, (first, worst), floor, &ask).unwrap_or_else(Worst::cut_short)
+    }
+
+    fn ask_near(
+        &self,
+        state: &Transient,
+        instant: Instant,
+        wanted: Wanted,
+        near: Option<(&Memory, &[Option<usize>])>,
+    ) -> (Worst, Option<Memory>) {
+        self.solves.fetch_add(1, Ordering::Relaxed);
+        let question = match wanted {
+            // A margin is one less a utilisation; rounding must not take back what was decided.
+            Wanted::AtLeast(margin) => {
+                Question::Decide((1.0 - margin) - 4.0 * f64::EPSILON * (1.0 - margin).abs().max(1.0))
+            }
+            Wanted::Value => Question::VALUE,
+        };
+        let assembly = self.assembler.assemble(state);
+        let answer = match near {
+            Some((memory, matching)) => assess_near(&assembly.structure, question, memory, matching),
+            None => assess_keeping(&assembly.structure, question).map_err(NotNear::Structure),
+        };
+        match answer {
+            Ok((assessment, memory)) => (self.worst(&assessment, &assembly, state, instant), Some(memory)),
+            Err(NotNear::Structure(problems)) => (self.unknown(problems, instant), None),
+            Err(NotNear::Length { .. } | NotNear::NoSuchBody { .. }) => unreachable!("memories are of the same robot"),
+        }
+    }
+
     fn ask(&self, state: &Transient, instant: Instant) -> Worst {
         self.read(&self.assembler.assemble(state), state, instant)
     }
 
     fn read(&self, assembly: &Assembly, state: &Transient, instant: Instant) -> Worst {
         match assess(&assembly.structure, Question::VALUE) {
-            Ok(assessment) => {
-                let weakest = assessment.weakest_connection().map(|i| state.engaged[assembly.connections[i]]);
-                let weakest = weakest.map(|held| seam(&held, state.placements));
-                Worst { margin: assessment.margin(), instant, weakest }
-            }
-            Err(problems) => {
-                let mut fault = self.fault.lock().expect("no thread panics while it holds the fault");
-                fault.get_or_insert(problems);
-                Worst { margin: Bracket::new(f64::NEG_INFINITY, f64::INFINITY), instant, weakest: None }
-            }
+            Ok(assessment) => self.worst(&assessment, assembly, state, instant),
+            Err(problems) => self.unknown(problems, instant),
         }
+    }
+
+    fn worst(&self, assessment: &Assessment, assembly: &Assembly, state: &Transient, instant: Instant) -> Worst {
+        self.tally.lock().expect("no thread panics while it counts").count(assessment);
+        let weakest = assessment.weakest_connection().map(|i| state.engaged[assembly.connections[i]]);
+        let weakest = weakest.map(|held| seam(&held, state.placements));
+        Worst { margin: assessment.margin(), instant, weakest }
+    }
+
+    /// The margin of a state that cannot be assessed.
+    fn unknown(&self, problems: Vec<InvalidStructure>, instant: Instant) -> Worst {
+        let mut fault = self.fault.lock().expect("no thread panics while it holds the fault");
+        fault.get_or_insert(problems);
+        Worst { margin: Bracket::new(f64::NEG_INFINITY, f64::INFINITY), instant, weakest: None }
     }
 }
 

@@ -4,7 +4,7 @@
 //! connection of it. Without parameters they are those of a lattice.
 
 use crate::robot::FaceConnection;
-use crate::statics::Bracket;
+use crate::statics::{Bracket, Tally};
 
 use super::action::Action;
 use super::in_the_way::InTheWay;
@@ -131,6 +131,8 @@ pub struct Statistics {
     pub certified: u64,
     /// Structures that the oracle assessed.
     pub oracle_solves: u64,
+    /// What it took to assess them, of lattice robots; not part of a plan file.
+    pub decided_by: Tally,
     /// Peak memory of the search, in approximate bytes.
     pub bytes: u64,
     /// Wall-clock time in s.

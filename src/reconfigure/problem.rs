@@ -7,7 +7,7 @@
 use crate::robot::{Cell, Configuration, FaceConnection, Goal, ModuleLoad, Orientation, Placement, Port};
 
 use super::goal::GoalTest;
-use super::heuristic::Reach;
+use super::heuristic::{Reach, Targets};
 use super::layout::{Bond, Layout, Placed};
 use super::moves::Move;
 use super::refusal::{Rejection, check};
@@ -97,6 +97,11 @@ impl Problem {
     pub fn needs(&self, step: Move) -> Vec<Cell> {
         let way = self.abilities.iter().find_map(|ability| ability.way(step));
         way.map_or_else(Vec::new, |way| way.needs(step.from).collect())
+    }
+
+    /// A layout of this problem's modules as what is to be reached.
+    pub fn targets(&self, layout: &Layout) -> Targets {
+        Targets::new(layout, self.abilities.iter().map(Reach::of).collect())
     }
 
     /// Whether the orientation of any module matters.

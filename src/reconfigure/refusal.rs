@@ -71,7 +71,7 @@ pub enum Impossible<C = FaceConnection> {
         /// How many the goal has.
         goal: usize,
     },
-    /// A module is fixed where the goal does not want it, or the other way round.
+    /// A module is fixed, or may not move, where the goal does not want it; or the goal fixes one that is not.
     FixedModule {
         /// The module.
         module: String,
@@ -160,7 +160,9 @@ impl<C> fmt::Display for Impossible<C> {
             Self::ModulesDiffer { module_type, start, goal } => {
                 write!(f, "the start has {start} interchangeable modules of type `{module_type}`, the goal {goal}")
             }
-            Self::FixedModule { module } => write!(f, "module `{module}` is fixed and cannot be as the goal wants it"),
+            Self::FixedModule { module } => {
+                write!(f, "module `{module}` may not move and cannot be as the goal wants it")
+            }
             Self::Disconnected(which) => write!(f, "the {which} is not connected"),
             Self::Unstable { which, margin, .. } if margin.upper == f64::NEG_INFINITY => {
                 write!(f, "the {which} tips, slides or falls as a whole")

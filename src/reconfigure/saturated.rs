@@ -10,12 +10,13 @@
 //!
 //! The goal's own connections are reached by a last transition without cost.
 
-use planners::{Space, Transition, Width};
+use planners::{Reversible, Space, Transition, Width};
 
 use crate::robot::Motion;
 
 use super::domain::{Domain, width};
 use super::goal::Arrival;
+use super::heuristic::Targets;
 use super::layout::{Bond, Layout};
 use super::moves::Move;
 use super::oracle::Worst;
@@ -50,6 +51,8 @@ pub struct Saturated<'a> {
     start: Width,
     /// No path is wider.
     at_most: f64,
+    /// The start as a goal, for what has been spent.
+    from_start: Targets,
 }
 
 /// The connections of a saturated layout that a move keeps until it begins, ascending.
@@ -59,29 +62,45 @@ pub fn kept(layout: &Layout, step: Move) -> Vec<Bond> {
     bonds
 }
 
+/// Margin of a move out of a state with everything engaged, with the detachments before it.
+pub fn of_move(domain: &Domain, layout: &Layout, step: Move, floor: f64) -> Worst {
+    let bonds = kept(layout, step);
+    let released = match step.motion {
+        // When a translation begins, the module is held as after the detachments.
+        Motion::Translation { .. } => None,
+        Motion::Rotation { .. } => Some(domain.of_state(layout, &bonds)),
+    };
+    if let Some(released) = released.filter(|released| released.is_out(floor)) {
+        return released.cut_short();
+    }
+    let worst = domain.of_move(layout, &bonds, step, floor);
+    match released {
+        Some(released) if !worst.is_out(floor) => released.or_worse(worst),
+        _ => worst,
+    }
+}
+
 impl<'a> Saturated<'a> {
     /// The space of a domain whose start has this margin and whose paths are no
     /// wider than `at_most`.
     pub fn new(domain: &'a Domain<'a>, start: Width, at_most: f64) -> Self {
-        Self { domain, start, at_most }
+        let from_start = domain.problem.targets(domain.problem.start_layout());
+        Self { domain, start, at_most, from_start }
     }
 
-    /// Margin of a move with the detachments before it.
-    fn of_move(&self, layout: &Layout, step: Move, floor: f64) -> Worst {
-        let bonds = kept(layout, step);
-        let released = match step.motion {
-            // When a translation begins, the module is held as after the detachments.
-            Motion::Translation { .. } => None,
-            Motion::Rotation { .. } => Some(self.domain.of_state(layout, &bonds)),
-        };
-        if let Some(released) = released.filter(|released| released.is_out(floor)) {
-            return released.cut_short();
-        }
-        let worst = self.domain.of_move(layout, &bonds, step, floor);
-        match released {
-            Some(released) if !worst.is_out(floor) => released.or_worse(worst),
-            _ => worst,
-        }
+    /// The moves out of a layout, in a fixed order.
+    fn moves(&self, layout: &Layout) -> Vec<Move> {
+        let mut moves = self.domain.moves(layout);
+        moves.retain(|&step| {
+            let bonds = kept(layout, step);
+            self.domain.is_connected(layout, &bonds) && self.domain.stays_connected(layout, &bonds, step)
+        });
+        moves
+    }
+
+    /// The last transition, seen from either of its ends.
+    fn finish(&self, arrival: Arrival, to: State) -> Transition<State, Action> {
+        Transition { action: Action::Finish(arrival), to, cost: 0, width_at_most: self.at_most }
     }
 
     /// A state's margin with everything engaged, if that alone rules out every
@@ -112,22 +131,13 @@ impl Space for Saturated<'_> {
             return Vec::new();
         }
         let layout = &from.layout;
-        let width_at_most = self.at_most;
-        let finish = self.domain.problem.goal().arrival(layout).map(|arrival| Transition {
-            action: Action::Finish(arrival),
-            to: State { layout: layout.clone(), arrived: true },
-            cost: 0,
-            width_at_most,
-        });
-        let moves = self.domain.moves(layout).into_iter().filter(|&step| {
-            let bonds = kept(layout, step);
-            self.domain.is_connected(layout, &bonds) && self.domain.stays_connected(layout, &bonds, step)
-        });
-        let moves = moves.map(|step| Transition {
+        let arrival = self.domain.problem.goal().arrival(layout);
+        let finish = arrival.map(|arrival| self.finish(arrival, State { layout: layout.clone(), arrived: true }));
+        let moves = self.moves(layout).into_iter().map(|step| Transition {
             action: Action::Move(step),
             to: State { layout: self.domain.after(layout, step), arrived: false },
             cost: 1,
-            width_at_most: width_at_most.min(self.domain.at_most(layout, step)),
+            width_at_most: self.at_most.min(self.domain.at_most(layout, step)),
         });
         finish.into_iter().chain(moves).collect()
     }
@@ -139,11 +149,22 @@ impl Space for Saturated<'_> {
         let worst = match *action {
             Action::Move(step) => match self.settled_out(&to.layout, floor) {
                 Some(out) => out,
-                None => self.of_move(&from.layout, step, floor),
+                None => of_move(self.domain, &from.layout, step, floor),
             },
             Action::Finish(arrival) => self.domain.of_state(&from.layout, &self.domain.problem.goal().bonds(arrival)),
         };
         width(worst.margin).in_series(self.start)
+    }
+
+    fn decide(&self, from: &State, action: &Action, to: &State, floor: f64) -> Option<Width> {
+        let Action::Move(step) = *action else { return None };
+        if !self.domain.stability || floor == f64::NEG_INFINITY {
+            return None;
+        }
+        let worst = self.domain.decides(&from.layout, &kept(&from.layout, step), step, &to.layout, floor);
+        // What is left open there is asked for itself.
+        let is_decided = worst.margin.lower >= floor || worst.is_out(floor);
+        is_decided.then(|| width(worst.margin).in_series(self.start))
     }
 
     fn remaining_cost(&self, state: &State) -> Option<u32> {
@@ -160,5 +181,37 @@ impl Space for Saturated<'_> {
 
     fn memory_bytes(&self) -> usize {
         self.domain.memory_bytes()
+    }
+}
+
+impl Reversible for Saturated<'_> {
+    /// The goal as it is written, and so none where it leaves open where it is or how modules are turned.
+    fn goals(&self) -> Vec<State> {
+        let goal = self.domain.problem.goal();
+        let is_known = !goal.is_free() && !self.domain.problem.turns();
+        is_known.then(|| State { layout: goal.layout().clone(), arrived: true }).into_iter().collect()
+    }
+
+    fn transitions_into(&self, to: &State) -> Vec<Transition<State, Action>> {
+        let layout = &to.layout;
+        if to.arrived {
+            let arrival = self.domain.problem.goal().arrival(layout).expect("only goals are arrived at");
+            return vec![self.finish(arrival, State { layout: layout.clone(), arrived: false })];
+        }
+        // Every move can be taken back through the same states.
+        let moves = self.moves(layout).into_iter().map(|back| {
+            let from = self.domain.after(layout, back);
+            Transition {
+                action: Action::Move(back.inverse()),
+                width_at_most: self.at_most.min(self.domain.at_most(layout, back)),
+                to: State { layout: from, arrived: false },
+                cost: 1,
+            }
+        });
+        moves.collect()
+    }
+
+    fn spent_cost(&self, state: &State) -> Option<u32> {
+        self.from_start.fewest_moves(&state.layout, [0; 3])
     }
 }

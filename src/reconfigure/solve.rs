@@ -3,7 +3,7 @@
 
 use std::time::Instant;
 
-use planners::{Space, Width};
+use planners::{Reversible, Space, Width};
 
 use crate::robot::{Configuration, FaceConnection, Goal};
 use crate::statics::Bracket;
@@ -62,7 +62,12 @@ pub fn solve(
             Reduction::Saturated => {
                 let space = Saturated::new(&domain, ends.start_width(), ends.at_most());
                 let steps = |path: &[saturated::Action]| expand(&problem, path);
-                task.run(&space, &Plans { domain: &domain, steps }, on_event)
+                let plans = Plans { domain: &domain, steps };
+                // Where it is known what the goal looks like, the search comes from there as well.
+                match space.goals().is_empty() {
+                    true => task.run(&space, &plans, on_event),
+                    false => task.run_with(&space, &plans, &|search, floor| search.from_both_ends(floor), on_event),
+                }
             }
             Reduction::Primitive => {
                 let space = Primitive::new(&domain, ends.start_width(), ends.at_most());
@@ -79,6 +84,7 @@ pub fn solve(
         return Err(Refusal::Structure(fault));
     }
     report.statistics.oracle_solves = domain.oracle.solves();
+    report.statistics.decided_by = domain.oracle.tally();
     report.statistics.seconds = began.elapsed().as_secs_f64();
     Ok(report)
 }

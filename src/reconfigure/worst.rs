@@ -59,12 +59,21 @@ pub struct Sampling {
 
 impl Sampling {
     /// The phases before refinement: the middle and the ends first, which are out most often.
-    fn initial_phases(self) -> impl Iterator<Item = f64> {
+    pub fn initial_phases(self) -> impl Iterator<Item = f64> {
         let steps = self.steps;
         let mut first = vec![steps / 2, steps, 0];
         first.dedup();
         let others: Vec<u32> = (1..steps).filter(|i| !first.contains(i)).collect();
         first.into_iter().chain(others).map(move |i| f64::from(i) / f64::from(steps))
+    }
+
+    /// The phases at which samples, sorted, are refined around the worst: half-way to its neighbours, if they are far.
+    pub fn around<C>(self, samples: &[(f64, Worst<C>)], worst: usize) -> Vec<f64> {
+        let around = [worst.checked_sub(1).map(|before| [before, worst]), Some([worst, worst + 1])];
+        let gaps = around.into_iter().flatten().filter(|&[_, high]| high < samples.len());
+        let gaps = gaps.map(|[a, b]| [samples[a].0, samples[b].0]);
+        let wide = gaps.filter(|[low, high]| high - low >= self.resolution);
+        wide.map(|[low, high]| f64::midpoint(low, high)).collect()
     }
 }
 
@@ -83,11 +92,7 @@ pub fn of_course<C: Copy + Send>(
         let worst = (0..samples.len())
             .min_by(|&a, &b| samples[a].1.margin.lower.total_cmp(&samples[b].1.margin.lower))
             .expect("a move has samples");
-        let around = [worst.checked_sub(1).map(|before| [before, worst]), Some([worst, worst + 1])];
-        let gaps = around.into_iter().flatten().filter(|&[_, high]| high < samples.len());
-        let wide = gaps.map(|[a, b]| [samples[a].0, samples[b].0]);
-        let wide = wide.filter(|[low, high]| high - low >= sampling.resolution);
-        let middles: Vec<f64> = wide.map(|[low, high]| f64::midpoint(low, high)).collect();
+        let middles = sampling.around(&samples, worst);
         if middles.is_empty() {
             let margin = samples.iter().map(|(_, w)| w.margin).reduce(Bracket::min);
             return Ok(Worst { margin: margin.expect("a move has samples"), ..samples[worst].1 });

@@ -11,6 +11,7 @@ use super::environment::Environment;
 use super::lattice::{Face, Placement};
 use super::module_type::ModuleType;
 use super::occupancy::{Occupancy, connection};
+use super::requirement::Requirement;
 
 /// A module of a configuration.
 #[derive(Clone, Debug, PartialEq)]
@@ -64,21 +65,6 @@ pub struct ModuleLoad {
     pub torque: Vec3,
     /// Point of action in the module frame, in m; the centre of mass when `None`.
     pub at: Option<Vec3>,
-}
-
-/// What every transient state must satisfy.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Requirement {
-    /// Smallest admissible internal stability margin.
-    pub margin: f64,
-    /// Whether all modules must stay connected.
-    pub connected: bool,
-}
-
-impl Default for Requirement {
-    fn default() -> Self {
-        Self { margin: 0.0, connected: true }
-    }
 }
 
 /// A robot, its surroundings and its loads.

@@ -19,6 +19,7 @@ mod module_type_check;
 mod motion;
 mod occupancy;
 mod problem;
+mod requirement;
 mod shape;
 mod stencil;
 mod stencil_check;
@@ -28,7 +29,7 @@ mod tests;
 
 pub use built_in::{BUILT_IN, BUILT_IN_MOTIONS, rofi};
 pub use catalogue::Catalogue;
-pub use configuration::{Configuration, FaceConnection, Goal, Matching, Module, ModuleLoad, Port, Requirement};
+pub use configuration::{Configuration, FaceConnection, Goal, Matching, Module, ModuleLoad, Port};
 pub use environment::{Environment, Ground, Obstacle};
 pub use hull::{Hull, HullFace};
 pub use lattice::{Cell, Face, Orientation, Placement, neighbour};
@@ -36,6 +37,7 @@ pub use module_type::{BodyType, JointType, LatticeType, ModuleType, PortPlace, P
 pub use motion::{Motion, Turn, axis_of_turn};
 pub use occupancy::Occupancy;
 pub use problem::{Fault, Part, Problem};
+pub use requirement::{Region, Requirement};
 pub use shape::{LARGEST, Shape, ShapeFault};
 pub use stencil::{FARTHEST_CELL, MotionType, Stencil};
 pub use terrain::{HeightField, MOST_HEIGHTS, MOST_TRIANGLES, Mesh, Terrain};

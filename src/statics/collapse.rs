@@ -13,17 +13,18 @@
 
 use crate::spatial::{Twist, Vec3};
 
-use super::blocks::{Block, Link};
+use super::blocks::{Block, Link, Vertex};
 use super::clusters::{Clusters, Reduced};
 use super::conic::{Attempt, solve};
 use super::connector::{Connector, Model};
+use super::frame::LinkFrame;
 use super::interior_point::InteriorPoint;
 use super::loads::BodyLoad;
 use super::program::{Program, Purpose};
 use super::reductions::Reductions;
 use super::second_order::norm;
 use super::structure::Structure;
-use super::tolerances::DATA;
+use super::tolerances::{DATA, ROUNDING};
 
 /// Largest force, as a multiple of the loads, that could still save a structure
 /// whose mechanism violates a contact by rounding.
@@ -114,13 +115,14 @@ fn quickly(reduced: &Reduced, program: &Program, inset: f64) -> Option<Vec<Twist
 }
 
 /// Whether a mechanism of the clusters does positive work without any contact
-/// resisting it.
+/// resisting it, both beyond what rounding of the data leaves open.
 fn proves(reduced: &Reduced, program: &Program, twists: &[Twist]) -> bool {
     let Reduced { structure, block, loads, .. } = reduced;
     let (mut power, mut size) = (0.0, 0.0);
     for (twist, load) in twists.iter().zip(loads) {
         power += twist.power(&load.wrench);
-        size += twist.linear.abs().dot(&load.force_size) + twist.angular.abs().dot(&load.torque_size);
+        // Directions are data too: a fast motion across the loads does no work for sure.
+        size += twist.linear.norm() * load.force_size.norm() + twist.angular.norm() * load.torque_size.norm();
     }
     if !(power > DATA * size) {
         return false;
@@ -130,15 +132,24 @@ fn proves(reduced: &Reduced, program: &Program, twists: &[Twist]) -> bool {
     let negligible = power / (FORCE_MULTIPLE * program.scales.force.iter().copied().fold(0.0, f64::max));
     block.links.iter().zip(&program.frames).all(|(&link, frame)| {
         let relative = frame.relative_twist(structure, |body| twists[body]);
-        let v = relative.linear;
-        match link {
-            Link::Contact(i) => v.z - structure.contacts[i].friction * v.xy().norm() >= -negligible,
-            Link::Connection(i) => {
-                let connector = &structure.connectors[structure.connections[i].connector];
-                resisted(connector, &relative) <= negligible
+        let resisting = match link {
+            Link::Contact(i) => {
+                let v = relative.linear;
+                structure.contacts[i].friction * v.xy().norm() - v.z
             }
-        }
+            Link::Connection(i) => resisted(&structure.connectors[structure.connections[i].connector], &relative),
+        };
+        resisting + rounding(structure, frame, twists) <= negligible
     })
+}
+
+/// Rounding of what a link resists of the twists of its ends, in m/s.
+fn rounding(structure: &Structure, frame: &LinkFrame, twists: &[Twist]) -> f64 {
+    let ends = frame.sides().into_iter().filter_map(|(side, _)| match side {
+        Vertex::Body(i) => Some((&twists[i], frame.origin - structure.bodies[i].com)),
+        Vertex::Ground => None,
+    });
+    ROUNDING * ends.map(|(twist, arm)| twist.linear.norm() + twist.angular.norm() * arm.norm()).sum::<f64>()
 }
 
 /// How far a relative twist is from being free of any resistance, in m/s.
@@ -177,8 +188,6 @@ fn unbound(model: &mut Model) {
 mod tests {
     use super::*;
     use crate::spatial::{Pose, Rotation};
-    use crate::statics::blocks::Vertex;
-    use crate::statics::frame::LinkFrame;
     use crate::statics::loads::own_loads;
     use crate::statics::structure::{Anchor, Body, Connection, Contact};
 

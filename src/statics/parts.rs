@@ -2,6 +2,7 @@
 
 use super::conic::inset_of;
 use super::program::{Cone, Form, Group, Program};
+use super::tolerances::ROUNDING;
 
 /// Scaled force at which a cone starts: about what the spanning tree carries.
 pub(super) const START: f64 = 1.0;
@@ -39,6 +40,15 @@ pub(super) fn parts(program: &Program) -> Vec<Part<6>> {
     program.groups.iter().map(|group| part(program, group)).collect()
 }
 
+/// Takes away what rounding of directions leaves of a variable along the others. A body that
+/// nothing holds along an axis would be held by it, next to not at all, and drift off.
+fn clear_rounding(column: &mut [f64; 6]) {
+    let largest = column.iter().fold(0.0_f64, |largest, entry| largest.max(entry.abs()));
+    for entry in column.iter_mut().filter(|entry| entry.abs() <= ROUNDING * largest) {
+        *entry = 0.0;
+    }
+}
+
 fn part(program: &Program, group: &Group) -> Part<6> {
     let ends = program.sides[group.link].each_ref().map(|side| {
         let side = side.as_ref()?;
@@ -61,6 +71,9 @@ fn part(program: &Program, group: &Group) -> Part<6> {
                     columns[2] = combined(group.scale * friction, 1, [(5, *px), (5, 0.0)]);
                 }
             }
+        }
+        for column in &mut columns[..group.len] {
+            clear_rounding(column);
         }
         Some((side.body, columns))
     });

@@ -58,4 +58,12 @@ proptest! {
         prop_assert_eq!(after.best().map(|path| (path.cost, path.width)), alone.best().map(|path| (path.cost, path.width)));
         prop_assert_eq!(after.proof(), alone.proof());
     }
+
+    #[test]
+    fn finding_nothing_bounds_all_widths(graph in blurred(9, 24), floor in 0..12_u32) {
+        let widest = reference::widest(&graph, |width| width.upper);
+        if let Outcome::OutOfBudget { best: None, proof, .. } = Search::new(&graph, options()).from_both_ends(f64::from(floor)) {
+            prop_assert!(widest.is_none_or(|widest| widest <= proof.width_at_most));
+        }
+    }
 }

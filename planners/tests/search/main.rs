@@ -2,6 +2,7 @@
 
 mod algebra;
 mod anytime;
+mod ascent;
 mod both_ends;
 mod brackets;
 mod budgets;

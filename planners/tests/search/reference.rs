@@ -29,6 +29,11 @@ pub fn distance_to_goal(graph: &Graph) -> Vec<Option<u32>> {
     each.reduce(|a, b| a.into_iter().zip(b).map(|(a, b)| nearer(a, b)).collect()).expect("one goal at least")
 }
 
+/// Least cost from the start to each node, whatever the widths.
+pub fn distance_from_start(graph: &Graph) -> Vec<Option<u32>> {
+    distances(graph, graph.start, false, |_| true)
+}
+
 /// Least cost from start to goal over transitions of which `end` of the width is
 /// at least `floor`.
 pub fn shortest(graph: &Graph, floor: f64, end: impl Fn(Width) -> f64) -> Option<u32> {

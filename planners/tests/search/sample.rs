@@ -53,6 +53,9 @@ fn build(nodes: usize, draws: &[Draw], goals: &[usize], fractions: &[u32], cappe
     let distance = reference::distance_to_goal(&graph);
     // Any fraction of the distance is admissible; different ones are inconsistent.
     graph.remaining = distance.iter().zip(fractions).map(|(d, fraction)| d.map(|d| d * fraction / 4)).collect();
+    let from_start = reference::distance_from_start(&graph);
+    let fractions = fractions.iter().rev();
+    graph.spent = from_start.iter().zip(fractions).map(|(d, fraction)| d.map(|d| d * fraction / 4)).collect();
     if capped && let Some(width) = reference::widest(&graph, |width| width.upper) {
         graph.width_at_most = width;
     }

@@ -3,7 +3,10 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
+use crate::{bench, generate};
 use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
+
+use crate::restrictions::Restrictions;
 
 /// Reconfiguration planner for modular robots in which every transient state is proved stable
 #[derive(Debug, Parser)]
@@ -73,6 +76,8 @@ pub struct PlanningArguments {
     /// How to look for plans of lattice robots
     #[arg(long, value_enum, default_value_t = PlannerArgument::Auto)]
     pub planner: PlannerArgument,
+    #[command(flatten)]
+    pub restrictions: Restrictions,
 }
 
 /// `--planner`.
@@ -132,8 +137,14 @@ pub enum Command {
     /// Map where a strut may stand over its node, or a joint in its range, and with what margin
     #[command(after_help = MOTION_EXIT_CODES)]
     MotionRange(MotionRangeArguments),
+    /// Say which actions of a plan may run at the same time, so that whatever overlaps is stable throughout
+    Parallel(ParallelArguments),
     /// Write a robot in another format: a configuration/1 file, or one of the RoFI platform's
     Convert(ConvertArguments),
+    /// Draw a random problem: a start and a goal that both stand
+    Generate(generate::Arguments),
+    /// Plan for all problems of a suite, verify every plan, and report
+    Bench(bench::Arguments),
     /// Print the JSON Schema of a format, or the names of all formats
     Schema(SchemaArguments),
 }
@@ -253,6 +264,44 @@ fn margin_to_leave(text: &str) -> Result<f64, String> {
 pub struct VerifyArguments {
     /// A plan/1 or certificate/1 file; `-` reads standard input
     pub file: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub struct ParallelArguments {
+    /// A plan/1 file for lattice modules; `-` reads standard input
+    pub file: PathBuf,
+    /// How many modules may move at once
+    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=8))]
+    pub most: u32,
+    /// Margin that every state must have [default: what the plan was made for]
+    #[arg(long, value_name = "X", value_parser = margin)]
+    pub min_margin: Option<f64>,
+    /// How long a move takes, in any unit
+    #[arg(long, value_name = "T", default_value_t = 1.0, value_parser = duration)]
+    pub move_time: f64,
+    /// How long attaching or detaching takes, in the same unit
+    #[arg(long, value_name = "T", default_value_t = 0.1, value_parser = duration)]
+    pub latch_time: f64,
+    /// Seconds after which what was not looked at keeps the plan's order
+    #[arg(long, value_name = "S", value_parser = seconds)]
+    pub time_limit: Option<Duration>,
+    /// Print a partial-order/1 document (and errors as an errors/1 document)
+    #[arg(long)]
+    pub json: bool,
+    /// Write a chart of when each action runs
+    #[arg(long, value_name = "FILE")]
+    pub svg: Option<PathBuf>,
+    /// Write the graph for Graphviz
+    #[arg(long, value_name = "FILE")]
+    pub dot: Option<PathBuf>,
+}
+
+fn duration(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() && value >= 0.0 => Ok(value),
+        Ok(_) => Err("a duration is finite and not negative".to_string()),
+        Err(error) => Err(error.to_string()),
+    }
 }
 
 #[derive(Debug, Args)]

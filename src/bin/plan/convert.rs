@@ -35,7 +35,7 @@ pub fn run(arguments: &ConvertArguments) -> io::Result<Exit> {
         RobotFormat::RofiVoxel => Form::RofiVoxels,
     };
     let written = match form {
-        Form::Own => write_linkage(&linkage).map_err(|problem| vec![problem.to_string()]),
+        Form::Own | Form::Tables => write_linkage(&linkage).map_err(|problem| vec![problem.to_string()]),
         _ => write_rofi(&linkage, form),
     };
     let text = match written {

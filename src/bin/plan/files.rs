@@ -33,3 +33,14 @@ fn all(reader: impl Read) -> io::Result<Vec<u8>> {
     reader.take(LARGEST_FILE as u64 + 1).read_to_end(&mut bytes)?;
     Ok(bytes)
 }
+
+/// Writes beside the file and renames, so that no half-written plan is left.
+///
+/// # Errors
+/// The file cannot be written.
+pub fn save(path: &Path, text: &str) -> io::Result<()> {
+    let mut beside = path.as_os_str().to_owned();
+    beside.push(".part");
+    std::fs::write(&beside, text)?;
+    std::fs::rename(&beside, path)
+}

@@ -4,21 +4,26 @@
 //! mechanics and no search; what it prints, the library has found.
 
 mod arguments;
+mod bench;
 mod check;
 mod convert;
 mod exit;
 mod explain;
 mod family;
 mod files;
+mod gantt;
+mod generate;
 mod gives_way;
 mod load_range;
 mod memory;
 mod motion_range;
 mod order;
 mod output;
+mod parallel;
 mod polar_map;
 mod profile;
 mod progress;
+mod restrictions;
 mod schema;
 mod search;
 mod summary;
@@ -41,6 +46,9 @@ fn main() -> ExitCode {
         (Some(Command::MotionRange(range)), _) => motion_range::run(&range),
         (Some(Command::Convert(convert)), _) => convert::run(&convert),
         (Some(Command::LoadRange(range)), _) => load_range::run(&range),
+        (Some(Command::Generate(generate)), _) => generate::run(&generate),
+        (Some(Command::Bench(bench)), _) => bench::run(&bench),
+        (Some(Command::Parallel(parallel)), _) => parallel::run(&parallel),
         (Some(Command::Schema(schema)), _) => schema::run(&schema),
         (None, Some(planning)) => search::run(&planning),
         (None, None) => {

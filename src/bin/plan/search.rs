@@ -1,7 +1,6 @@
 //! `plan START GOAL`
 
 use std::io;
-use std::path::Path;
 use std::process;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -63,14 +62,14 @@ fn plan<F: Family>(arguments: &PlanningArguments, problem: &F) -> io::Result<Exi
         && let Some(plan) = &report.plan
     {
         let names: Vec<String> = plan.actions.iter().map(|planned| problem.action(&planned.action)).collect();
-        if let Err(trouble) = save(path, &profile::text(path, plan, &names)) {
+        if let Err(trouble) = files::save(path, &profile::text(path, plan, &names)) {
             output::message(&format!("error: {}: {trouble}", path.display()))?;
             output::result(&document)?;
             return Ok(Exit::BadInput);
         }
     }
     if let Some(out) = &arguments.out
-        && let Err(trouble) = save(out, &document)
+        && let Err(trouble) = files::save(out, &document)
     {
         output::message(&format!("error: {}: {trouble}", out.display()))?;
         output::result(&document)?;
@@ -118,7 +117,10 @@ fn appraise<F: Family>(problem: &F, report: &mut Answer<F>, required: f64) -> Re
 fn read(arguments: &PlanningArguments) -> io::Result<Result<Problem, Exit>> {
     let (start, goal) = (files::read(&arguments.start), files::read(&arguments.goal));
     match read_problem(&start, &goal, &files::resolve) {
-        Ok(problem) => Ok(Ok(problem)),
+        Ok(mut problem) => match arguments.restrictions.apply(&mut problem) {
+            Ok(()) => Ok(Ok(problem)),
+            Err(trouble) => output::refused(&start.name, [trouble], arguments.json).map(Err),
+        },
         Err(diagnostics) => output::bad_input(&diagnostics, arguments.json).map(Err),
     }
 }
@@ -157,7 +159,7 @@ fn search<F: Family>(arguments: &PlanningArguments, problem: &F) -> Result<Resul
 }
 
 /// A flag that the first Ctrl-C raises; the second one ends the program.
-fn cancelled_by_interrupt() -> Result<Arc<AtomicBool>, String> {
+pub fn cancelled_by_interrupt() -> Result<Arc<AtomicBool>, String> {
     let cancel = Arc::new(AtomicBool::new(false));
     let raised = Arc::clone(&cancel);
     let on_interrupt = move || {
@@ -167,12 +169,4 @@ fn cancelled_by_interrupt() -> Result<Arc<AtomicBool>, String> {
     };
     ctrlc::set_handler(on_interrupt).map_err(|error| error.to_string())?;
     Ok(cancel)
-}
-
-/// Writes beside the file and renames, so that no half-written plan is left.
-fn save(path: &Path, text: &str) -> io::Result<()> {
-    let mut beside = path.as_os_str().to_owned();
-    beside.push(".part");
-    std::fs::write(&beside, text)?;
-    std::fs::rename(&beside, path)
 }

@@ -18,12 +18,12 @@ pub(crate) struct Fault {
 }
 
 impl Fault {
-    pub(super) fn new(code: Code, span: Span, message: impl Into<String>, hint: &str) -> Self {
+    pub(crate) fn new(code: Code, span: Span, message: impl Into<String>, hint: &str) -> Self {
         let hint = (!hint.is_empty()).then(|| hint.to_string());
         Self { code, span, message: message.into(), hint }
     }
 
-    pub(super) fn syntax(span: Span, message: impl Into<String>, hint: &str) -> Self {
+    pub(crate) fn syntax(span: Span, message: impl Into<String>, hint: &str) -> Self {
         Self::new(codes::SYNTAX, span, message, hint)
     }
 }

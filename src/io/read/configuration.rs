@@ -85,7 +85,7 @@ pub(super) fn read_start<T>(
         gravity: wire.gravity_m_s2.map_or_else(Vec3::zeros, vector),
         environment: environment?,
         loads: environment::loads(loads, &names, &place.key("loads"), findings),
-        require: environment::requirement(wire.require.as_ref()),
+        require: environment::requirement(wire.require.as_ref(), &names, &place.key("require"), findings),
     };
     build(Draft { wire: &wire, names: &names, catalogue: catalogue?, surroundings, place }, findings)
 }

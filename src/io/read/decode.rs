@@ -44,6 +44,7 @@ pub(super) fn decode<T: DeserializeOwned>(format: &str, place: &Place<'_>, findi
 /// Which of the `expected` formats a document says it has.
 pub(super) fn format_of<'e>(place: &Place<'_>, expected: &[&'e str], findings: &mut Findings) -> Option<&'e str> {
     let node = place.node()?;
+    let opening = |wanted: &str| place.opening(wanted);
     let full: Vec<_> = expected.iter().map(|name| format!("{name}/{VERSION}")).collect();
     let wanted = full.iter().map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(" or ");
     let Some(found) = node.get_str("format") else {
@@ -60,7 +61,7 @@ pub(super) fn format_of<'e>(place: &Place<'_>, expected: &[&'e str], findings: &
                 return None;
             }
         };
-        findings.add(&place.key("format"), code, message, format!("the file starts with \"format\": {wanted}"));
+        findings.add(&place.key("format"), code, message, opening(&wanted));
         return None;
     };
     if let Some(index) = full.iter().position(|name| name == found) {
@@ -74,12 +75,18 @@ pub(super) fn format_of<'e>(place: &Place<'_>, expected: &[&'e str], findings: &
     } else {
         match suggest::closest(found, full.iter().map(String::as_str)) {
             Some(meant) => format!("did you mean \"{meant}\"?"),
-            None => format!("the file starts with \"format\": {wanted}"),
+            None => opening(&wanted),
         }
     };
     let message = format!("expected {wanted}, found \"{}\"", clipped(found));
     findings.add(&place.key("format"), codes::FORMAT, message, hint);
     None
+}
+
+/// The number that stands in the text. TOML writes some in ways that JSON does not know, e.g. `1_000`.
+fn number(source: &str, value: f64) -> Json {
+    let whole = (value.fract() == 0.0 && value.abs() < 2.0_f64.powi(53)).then_some(value as i64);
+    serde_json::from_str(source).unwrap_or_else(|_| whole.map_or_else(|| Json::from(value), Json::from))
 }
 
 /// The value as `serde_json` has it, without the keys at `unknown`. Integers
@@ -88,7 +95,7 @@ fn to_json(node: &Node, place: &Place<'_>, unknown: &HashSet<u32>) -> Json {
     match &node.value {
         Value::Null => Json::Null,
         Value::Bool(value) => Json::Bool(*value),
-        Value::Number(_) => serde_json::from_str(place.source(node.span)).unwrap_or(Json::Null),
+        Value::Number(value) => number(place.source(node.span), *value),
         Value::String(text) => Json::String(text.to_string()),
         Value::Array(items) => items.iter().map(|item| to_json(item, place, unknown)).collect(),
         Value::Object(members) => {

@@ -4,11 +4,11 @@ use nalgebra::Translation3;
 
 use super::super::document::Resolve;
 use super::super::findings::{Findings, Place};
-use super::super::wire;
+use super::super::{codes, wire};
 use super::names::Names;
 use super::rotation::{rotation, vector};
 use super::terrain::terrain;
-use crate::robot::{Environment, Ground, ModuleLoad, Obstacle, Requirement};
+use crate::robot::{Environment, Ground, ModuleLoad, Obstacle, Region, Requirement};
 use crate::spatial::{Pose, Rotation, Vec3};
 
 /// Friction coefficient between modules that touch without being connected,
@@ -66,12 +66,32 @@ pub(super) fn loads(
     list.iter().enumerate().filter_map(read).collect()
 }
 
-/// What transient states must satisfy.
-pub(super) fn requirement(wire: Option<&wire::Require>) -> Requirement {
+/// What transient states must satisfy, of a robot with these modules.
+pub(super) fn requirement(
+    wire: Option<&wire::Require>,
+    modules: &Names<'_>,
+    place: &Place<'_>,
+    findings: &mut Findings,
+) -> Requirement {
     let standard = Requirement::default();
     let Some(wire) = wire else { return standard };
+    let stay = wire.stay.iter().enumerate();
+    let stay = stay.filter_map(|(i, id)| modules.find(id, &place.key("stay").index(i), findings)).collect();
+    let regions = wire.keep_out.iter().enumerate();
+    let keep_out = regions.map(|(i, wire)| region(wire, &place.key("keep_out").index(i), findings)).collect();
     Requirement {
         margin: wire.margin.map_or(standard.margin, |margin| margin.0),
         connected: wire.connected.unwrap_or(standard.connected),
+        stay,
+        keep_out,
     }
+}
+
+fn region(wire: &wire::Region, place: &Place<'_>, findings: &mut Findings) -> Region {
+    let region = Region { low: vector(wire.low_m), high: vector(wire.high_m) };
+    if !(region.high - region.low).iter().all(|&extent| extent > 0.0) {
+        let hint = "every coordinate of `high_m` is above that of `low_m`".to_string();
+        findings.add(&place.key("high_m"), codes::OUT_OF_RANGE, "the box is empty", hint);
+    }
+    region
 }

@@ -174,16 +174,25 @@ fn compare_surroundings<R: Compared>(
     if wire.environment.is_some() && goal.environment() != start.environment() {
         differs("environment", place, findings);
     }
-    if wire.require.is_some() && environment::requirement(wire.require.as_ref()) != *start.require() {
-        differs("require", place, findings);
+    if wire.require.is_some() {
+        let names = names_of(start, place, findings);
+        let own = environment::requirement(wire.require.as_ref(), &names, &place.key("require"), findings);
+        if own != *start.require() {
+            differs("require", place, findings);
+        }
     }
+}
+
+/// The start's modules, as a goal calls them.
+fn names_of<'a, R: Compared>(start: &'a R, place: &Place<'_>, findings: &mut Findings) -> Names<'a> {
+    let ids = (0..start.count()).map(|module| start.id(module)).collect();
+    Names::new("modules of the start", ids, |_| place.clone(), findings)
 }
 
 /// A goal's loads, if it lists them, must be the start's.
 fn compare_loads<R: Compared>(wire: &wire::Configuration, start: &R, place: &Place<'_>, findings: &mut Findings) {
     let Some(list) = &wire.loads else { return };
-    let ids = (0..start.count()).map(|module| start.id(module)).collect();
-    let names = Names::new("modules of the start", ids, |_| place.clone(), findings);
+    let names = names_of(start, place, findings);
     if environment::loads(list, &names, &place.key("loads"), findings) != start.loads() {
         differs("loads", place, findings);
     }

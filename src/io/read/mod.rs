@@ -25,14 +25,17 @@ mod motion;
 mod names;
 mod outcome;
 mod plan;
+mod results;
 mod robots;
 mod rofi;
 mod rotation;
 mod sequence;
 mod stl_and_obj;
 mod structure;
+mod suite;
 mod terrain;
 
+pub use results::{Message, Results};
 pub(super) use rotation::port_rotation;
 
 use super::certificate_document::CertificateDocument;
@@ -44,6 +47,7 @@ use super::form::Form;
 use super::plan_document::{LinkagePlanDocument, PlanDocument};
 use crate::robot::linkage::Linkage;
 use crate::robot::{Catalogue, Configuration};
+use crate::suite::Suite;
 use configuration::{Robot, read_start};
 
 /// Reads a `structure/1` file.
@@ -89,7 +93,7 @@ pub fn read_linkage(file: &SourceFile, resolve: Resolve<'_>) -> Result<Linkage, 
     let mut findings = Findings::default();
     let document = findings.open_robot(file);
     let value = document.as_ref().and_then(|document| match document.form {
-        Form::Own => read_start(&document.root(), resolve, &mut findings, linkage::build),
+        Form::Own | Form::Tables => read_start(&document.root(), resolve, &mut findings, linkage::build),
         _ => rofi::parse(document, &mut findings).and_then(|world| rofi::start(&world, None, &mut findings)),
     });
     findings.finish(value)
@@ -166,6 +170,34 @@ pub fn read_linkage_plan(file: &SourceFile) -> Result<LinkagePlanDocument, Diagn
         }
     });
     findings.finish(value)
+}
+
+/// Reads a `suite/1` file, which is written in TOML.
+///
+/// # Errors
+/// All problems of the file at once.
+pub fn read_suite(file: &SourceFile) -> Result<Suite, Diagnostics> {
+    let mut findings = Findings::default();
+    let document = findings.open_tables(file);
+    let value = document.as_ref().and_then(|document| suite::read(&document.root(), &mut findings));
+    findings.finish(value)
+}
+
+/// Reads a file of results, a `result/1` document on each line. A last line without a line feed was being written
+/// when the program was stopped: it is left out.
+///
+/// # Errors
+/// All problems of the file at once.
+pub fn read_results(file: &SourceFile) -> Result<Results, Diagnostics> {
+    let mut findings = Findings::default();
+    let documents = findings.open_lines(file);
+    let value = documents.map(|documents| results::read(&documents, file, &mut findings));
+    findings.finish(value)
+}
+
+/// Reads a line that a job writes while it runs; `None` where it is none.
+pub fn read_message(line: &str) -> Option<Message> {
+    results::message(line)
 }
 
 /// Reads a `certificate/1` file, whose checksum must be right. Whether the certificate

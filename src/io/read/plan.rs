@@ -13,6 +13,7 @@ use super::linkage_plan::LinkagePlans;
 use super::outcome::{limit, outcome};
 use super::sequence::{Family, Parts, sequence};
 use crate::reconfigure::{Objective, Outcome, Proof, Report, Statistics};
+use crate::statics::Tally;
 
 /// Reads a plan for whatever robot it is.
 pub(super) fn read(root: &Place<'_>, findings: &mut Findings) -> Option<Verifiable> {
@@ -103,7 +104,7 @@ fn proof<C>(wire: &wire::Proof, outcome: &Outcome<C>) -> Proof {
     }
 }
 
-fn statistics(wire: &wire::Statistics, place: &Place<'_>, findings: &mut Findings) -> Statistics {
+pub(super) fn statistics(wire: &wire::Statistics, place: &Place<'_>, findings: &mut Findings) -> Statistics {
     let certified = wire.certified.unwrap_or_default();
     let statistics = Statistics {
         expanded: wire.expanded,
@@ -111,6 +112,7 @@ fn statistics(wire: &wire::Statistics, place: &Place<'_>, findings: &mut Finding
         generated: wire.generated.unwrap_or_else(|| certified.saturating_add(wire.decided_by_bounds)),
         certified,
         oracle_solves: wire.oracle_solves,
+        decided_by: Tally::default(),
         bytes: wire.memory_bytes.unwrap_or_default(),
         seconds: wire.seconds.0,
     };

@@ -204,6 +204,22 @@ pub(crate) struct Require {
     /// Whether all modules must stay connected, by default true.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) connected: Option<bool>,
+    /// Modules that no action may move, though nothing else holds them, by their ids.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(crate) stay: Vec<String>,
+    /// Boxes that no move may pass through; they carry nothing.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(crate) keep_out: Vec<Region>,
+}
+
+/// A box with its edges along the world's axes.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Region {
+    /// Its lowest corner.
+    pub(crate) low_m: [Real; 3],
+    /// Its highest corner, above the lowest along every axis.
+    pub(crate) high_m: [Real; 3],
 }
 
 /// How a goal is compared with a state.

@@ -16,9 +16,12 @@ mod load_range;
 mod motion;
 mod number;
 mod outcome;
+mod partial_order;
 mod plan;
+mod result;
 mod rofi;
 mod structure;
+mod suite;
 mod terrain;
 
 pub(super) use action::{Action, Axis, CellTarget, Half, JointOf, SpotTarget, TurnAbout};
@@ -32,7 +35,7 @@ pub(super) use check::{
 };
 pub(super) use configuration::{
     CatalogueRef, Configuration, ConfigurationFormat, Connections, Environment, FrameMatch, Ground, Match, Module,
-    ModuleLoad, ModuleMatch, Obstacle, PairConnection, Require, RolledConnection,
+    ModuleLoad, ModuleMatch, Obstacle, PairConnection, Region, Require, RolledConnection,
 };
 pub(super) use connector::Connector;
 pub(super) use errors::{Errors, ErrorsFormat, FileError};
@@ -42,12 +45,15 @@ pub(super) use load_range::{Failure, LoadRange, LoadRangeFormat, RangeEnd, Range
 pub(super) use motion::{Edge, Stencil};
 pub(super) use number::{AngleRange, Bound, Limit, NonNegative, Positive, Real, reals};
 pub(super) use outcome::{Impossible, Outcome, StoppedBy, Which};
+pub(super) use partial_order::{CheckedMoments, OrderedAction, PartialOrder, PartialOrderFormat, Wait};
 pub(super) use plan::{
     Alternative, Bottleneck, Bracket, IfStronger, Moment, Objective, Plan, PlanFormat, Proof, Statistics,
 };
+pub(super) use result::{Asked, FoundPlan, JobEnding, JobResult, PlanFlaw, ReplayOf, ResultFormat, TracePoint};
 pub(super) use rofi::{
     ComponentOf, CoordinateAxis, Direction, DockOf, IdentityTransform, ModuleJoint, NameOrNumber, PlacingJoint,
     PlacingKind, RofiModule, RofiWorld, SpaceJoint, Transform, Voxel, VoxelWorld,
 };
 pub(super) use structure::{Body, Connection, Contact, Load, Structure, StructureFormat};
+pub(super) use suite::{GoalOrigin, PlannerName, RobotFamily, Seeds, Suite, SuiteCase, TerrainKind};
 pub(super) use terrain::{Mesh, Terrain};

@@ -4,8 +4,8 @@ use super::super::wire::{self, NonNegative, Positive, Real};
 use super::catalogue::{positive, referred};
 use super::{vector, xyzw};
 use crate::robot::{
-    Configuration, Environment, FaceConnection, Goal, Matching, Module, ModuleLoad, Orientation, Port, Requirement,
-    Shape, Terrain,
+    Configuration, Environment, FaceConnection, Goal, Matching, Module, ModuleLoad, Orientation, Port, Region,
+    Requirement, Shape, Terrain,
 };
 use crate::spatial::Rotation;
 
@@ -17,7 +17,7 @@ pub(super) fn start(configuration: &Configuration) -> wire::Configuration {
         gravity_m_s2: Some(vector(configuration.gravity)),
         environment: Some(environment(&configuration.environment)),
         loads: Some(loads.collect()),
-        require: Some(require(&configuration.require)),
+        require: Some(require(&configuration.require, |module| configuration.modules[module].id.as_str())),
         ..robot(configuration)
     }
 }
@@ -37,8 +37,14 @@ pub(super) fn module_load(id: &str, load: &ModuleLoad) -> wire::ModuleLoad {
     }
 }
 
-pub(super) fn require(require: &Requirement) -> wire::Require {
-    wire::Require { margin: Some(Real(require.margin)), connected: Some(require.connected) }
+pub(super) fn require<'a>(require: &Requirement, id: impl Fn(usize) -> &'a str) -> wire::Require {
+    let region = |region: &Region| wire::Region { low_m: vector(region.low), high_m: vector(region.high) };
+    wire::Require {
+        margin: Some(Real(require.margin)),
+        connected: Some(require.connected),
+        stay: require.stay.iter().map(|&module| id(module).to_owned()).collect(),
+        keep_out: require.keep_out.iter().map(region).collect(),
+    }
 }
 
 pub(super) fn matching(matching: Matching) -> wire::Match {

@@ -16,7 +16,7 @@ pub(super) fn start(linkage: &Linkage) -> wire::Configuration {
         gravity_m_s2: Some(vector(linkage.gravity)),
         environment: Some(environment(&linkage.environment)),
         loads: Some(loads.collect()),
-        require: Some(require(&linkage.require)),
+        require: Some(require(&linkage.require, |module| linkage.modules[module].id.as_str())),
         ..robot(linkage)
     }
 }

@@ -13,7 +13,9 @@ mod linkage;
 mod linkage_plan;
 mod load_range;
 mod outcome;
+mod partial_order;
 mod plan;
+mod result;
 mod rofi;
 mod sequence;
 mod structure;
@@ -31,12 +33,14 @@ use super::diagnostics::Diagnostics;
 use super::document::NamedStructure;
 use super::form::Form;
 use super::load_range_report::LoadRangeReport;
+use super::partial_order_report::PartialOrderReport;
 use super::plan_document::{LinkagePlanDocument, PlanDocument};
 use super::{layout, wire};
-use crate::robot::linkage::Linkage;
-use crate::robot::{Catalogue, Configuration};
+use crate::robot::linkage::{self as linkage_core, Linkage};
+use crate::robot::{Catalogue, Configuration, Goal};
 use crate::spatial::{Rotation, Vec3};
 use crate::statics::Bracket;
+use crate::suite::{Job, Point, Record};
 
 /// A value that its format has no way to say: a NaN, an infinity, or a plan that is none.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -66,6 +70,14 @@ pub fn write_structure(structure: &NamedStructure) -> Result<String, Unwritable>
     text(&structure::wire(structure))
 }
 
+/// Writes a `partial-order/1` report about the best plan of a document.
+///
+/// # Errors
+/// A number that is not finite, or a document without a plan.
+pub fn write_partial_order(document: &PlanDocument, report: &PartialOrderReport<'_>) -> Result<String, Unwritable> {
+    text(&partial_order::wire(document, report)?)
+}
+
 /// Writes a `configuration/1` file that reads back equal, bit for bit. A
 /// catalogue that is not built in is written into it.
 ///
@@ -85,6 +97,38 @@ pub fn write_linkage(linkage: &Linkage) -> Result<String, Unwritable> {
     text(&linkage::start(linkage))
 }
 
+/// Writes a `configuration/1` file of a goal of lattice modules, which takes from its start whatever it does not say.
+///
+/// # Errors
+/// A number that is not finite.
+pub fn write_goal(goal: &Goal) -> Result<String, Unwritable> {
+    text(&configuration::goal(goal))
+}
+
+/// Writes a `configuration/1` file of a goal of a linkage, as [`write_goal`] does one of lattice modules.
+///
+/// # Errors
+/// A number that is not finite.
+pub fn write_linkage_goal(goal: &linkage_core::Goal) -> Result<String, Unwritable> {
+    text(&linkage::goal(goal))
+}
+
+/// Writes a `result/1` document on a line of its own, the line feed included.
+///
+/// # Errors
+/// A number that is not finite where one has to be.
+pub fn write_result(job: &Job, record: &Record) -> Result<String, Unwritable> {
+    line(&result::wire(job, record))
+}
+
+/// Writes what becomes known of a running job on a line of its own, the line feed included.
+///
+/// # Errors
+/// A time that is not finite.
+pub fn write_point(point: &Point) -> Result<String, Unwritable> {
+    line(&result::point(point))
+}
+
 /// Writes a robot of RoFI modules as a file of that platform, in the form that is asked for.
 ///
 /// # Errors
@@ -92,7 +136,7 @@ pub fn write_linkage(linkage: &Linkage) -> Result<String, Unwritable> {
 pub fn write_rofi(linkage: &Linkage, form: Form) -> Result<String, Vec<String>> {
     let json = |text: Result<String, Unwritable>| text.map_err(|problem| vec![problem.to_string()]);
     match form {
-        Form::Own => Err(vec!["it is no format of the RoFI platform".to_string()]),
+        Form::Own | Form::Tables => Err(vec!["it is no format of the RoFI platform".to_string()]),
         Form::RofiWorld => rofi::world(linkage).and_then(|world| json(text(&world))),
         Form::RofiText => rofi::text(linkage),
         Form::RofiVoxels => rofi::voxels(linkage).and_then(|voxels| json(text(&voxels))),
@@ -160,6 +204,10 @@ impl Diagnostics {
         // Strings and counts only: nothing that JSON could not say.
         text(&errors::wire(self)).unwrap_or_default()
     }
+}
+
+fn line(wire: &impl Serialize) -> Result<String, Unwritable> {
+    Ok(serde_json::to_string(wire).map_err(Unwritable::new)? + "\n")
 }
 
 fn text(wire: &impl Serialize) -> Result<String, Unwritable> {

@@ -87,7 +87,7 @@ fn proof(proof: &Proof) -> wire::Proof {
     }
 }
 
-fn statistics(statistics: &Statistics) -> wire::Statistics {
+pub(super) fn statistics(statistics: &Statistics) -> wire::Statistics {
     wire::Statistics {
         expanded: statistics.expanded,
         states: Some(statistics.states),

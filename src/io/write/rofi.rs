@@ -6,7 +6,7 @@
 use super::super::rofi::{self as words, QUARTERS};
 use super::super::wire;
 use crate::robot::linkage::{Code, Connection, Linkage, Port};
-use crate::robot::rofi;
+use crate::robot::{Requirement, rofi};
 use crate::spatial::{Pose, Rotation, Vec3};
 
 /// Distance in cells and sine of the angle up to which a pose is in the lattice.
@@ -26,7 +26,7 @@ fn surroundings(linkage: &Linkage) -> Reasons {
         (environment.ground.is_some(), "the ground"),
         (!environment.obstacles.is_empty(), "obstacles"),
         (!linkage.loads.is_empty(), "loads"),
-        (linkage.require.margin != 0.0 || !linkage.require.connected, "what transient states must satisfy"),
+        (linkage.require != Requirement::default(), "what transient states must satisfy"),
     ];
     said.into_iter()
         .filter(|(there, _)| *there)

@@ -14,6 +14,7 @@ use super::problem::Problem;
 #[derive(Debug)]
 pub struct Clearance {
     around: Surroundings,
+    off_limits: Surroundings,
 }
 
 /// A body in W.
@@ -28,10 +29,13 @@ struct Body {
 impl Clearance {
     /// Of robots in the environment of a problem's start.
     pub fn new(problem: &Problem) -> Self {
-        Self { around: Surroundings::new(&problem.start.environment) }
+        Self {
+            around: Surroundings::new(&problem.start.environment),
+            off_limits: Surroundings::new(&problem.start.require.off_limits()),
+        }
     }
 
-    /// Whether nothing is hit during a move. Bodies that a joint or the rolling connection holds together do not hit
+    /// Whether nothing is hit and no forbidden region passed during a move. Bodies that a joint or the rolling connection holds together do not hit
     /// each other.
     pub fn is_free(&self, view: &View, step: &Step) -> bool {
         let (moving, resting): (Vec<Body>, Vec<Body>) =
@@ -40,7 +44,9 @@ impl Clearance {
             let may_hit = |other: &&Body| may_meet(mover, other, &step.motion) && !held(view, step, mover, other);
             let mut near = resting.iter().filter(may_hit);
             near.all(|other| first_collision(&mover.solid, &step.motion, &other.solid).is_none())
-                && self.around.first_collision(&mover.solid, &step.motion).is_none()
+                && [&self.around, &self.off_limits]
+                    .iter()
+                    .all(|part| part.first_collision(&mover.solid, &step.motion).is_none())
         })
     }
 }

@@ -30,7 +30,9 @@ mod solve;
 mod state;
 #[cfg(test)]
 mod tests;
+mod wander;
 
 pub use action::{Action, Half};
 pub use motion_range::{MotionRange, NotABridge, Stand, Turning, motion_range};
 pub use solve::solve;
+pub use wander::wander;

@@ -198,7 +198,11 @@ impl View {
 
     /// Adds a move unless it moves what is held, or is another one seen from the other side.
     fn add(&self, step: Step, rules: Rules, steps: &mut Vec<Step>) {
-        let is_held = |module: usize| self.classes[self.modules[module].class].fixed && self.moves(&step, module, 0);
+        let is_held = |module: usize| {
+            let class = &self.classes[self.modules[module].class];
+            let is_moved = |body| self.moves(&step, module, body);
+            class.fixed && is_moved(0) || class.stays && (0..class.kind.bodies.len()).any(is_moved)
+        };
         let is_other = rules.either_side && self.moves(&step, 0, 0);
         if !is_other && !(0..self.modules.len()).any(is_held) {
             steps.push(step);

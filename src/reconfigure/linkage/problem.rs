@@ -6,7 +6,7 @@
 use std::sync::Arc;
 
 use crate::reconfigure::refusal::{Impossible, Refusal, Rejection};
-use crate::robot::linkage::{Directions, Goal, Linkage, MEETING, Symmetry, is_square};
+use crate::robot::linkage::{Directions, Goal, Linkage, MEETING, Module, Symmetry, is_square};
 use crate::robot::{ModuleLoad, ModuleType};
 use crate::spatial::{Pose, Vec3};
 
@@ -23,6 +23,8 @@ pub struct Class {
     pub kind: Arc<ModuleType>,
     /// Whether its modules are held immovably.
     pub fixed: bool,
+    /// Whether no action may move its modules or their joints.
+    pub stays: bool,
     /// The loads on each of its modules; their module index is always 0.
     pub loads: Vec<ModuleLoad>,
     /// The one module of the class, where modules are labelled.
@@ -115,16 +117,19 @@ fn normal(linkage: &Linkage) -> Linkage {
 fn frame(start: &Linkage, goal: &Goal) -> Result<Frame, Refusal> {
     let is_held = start.modules.iter().any(|module| module.fixed);
     let is_loaded = !start.loads.is_empty();
+    let is_unrestricted = start.require.stay.is_empty() && start.require.keep_out.is_empty();
     let has_ground = start.environment.ground.is_some();
     let is_empty = start.environment.obstacles.is_empty() && !has_ground;
     if !goal.matching.free_frame {
         return Ok(Frame::World);
     }
-    if is_empty && !is_held && !is_loaded && start.gravity == Vec3::zeros() {
+    if is_empty && is_unrestricted && !is_held && !is_loaded && start.gravity == Vec3::zeros() {
         return Ok(Frame::Free);
     }
     let because = match () {
         () if is_held => "a module is fixed",
+        () if !start.require.stay.is_empty() => "a module may not move",
+        () if !start.require.keep_out.is_empty() => "there are forbidden regions",
         () if !start.environment.obstacles.is_empty() => "there are obstacles",
         () if start.gravity.x != 0.0 || start.gravity.y != 0.0 => "gravity is not vertical",
         () if is_loaded => "a module is loaded",
@@ -147,16 +152,18 @@ fn classes(start: &Linkage, labelled: bool, square: bool) -> (Vec<Class>, Vec<us
         let own = start.loads.iter().filter(|load| load.module == index);
         let loads: Vec<ModuleLoad> = own.map(|load| ModuleLoad { module: 0, ..load.clone() }).collect();
         let label = labelled.then(|| module.id.clone());
+        let stays = start.require.stay.contains(&index);
         let is_same = |class: &Class| {
             class.module_type == module.module_type
                 && class.fixed == module.fixed
+                && class.stays == stays
                 && class.loads == loads
                 && class.label == label
         };
         let position = classes.iter().position(is_same).unwrap_or_else(|| {
             let kind = start.module_type(index).clone();
             let mut symmetries = start.catalogue.symmetries(module.module_type, directions);
-            if module.fixed {
+            if module.fixed || stays {
                 symmetries.truncate(1);
             }
             let points = || loads.iter().map(|load| load.at.unwrap_or(kind.body().com));
@@ -166,7 +173,17 @@ fn classes(start: &Linkage, labelled: bool, square: bool) -> (Vec<Class>, Vec<us
             let kind = Arc::new(kind);
             let module_type = module.module_type;
             let reach = reach(&kind);
-            classes.push(Class { module_type, kind, fixed: module.fixed, loads, label, symmetries, reach, beyond });
+            classes.push(Class {
+                module_type,
+                kind,
+                fixed: module.fixed,
+                stays,
+                loads,
+                label,
+                symmetries,
+                reach,
+                beyond,
+            });
             classes.len() - 1
         });
         class_of.push(position);
@@ -217,10 +234,14 @@ fn goal_classes(
         let namesake = namesake.filter(|&index| start.modules[index].module_type == module.module_type);
         let is_own = |&index: &usize| {
             let class = &classes[class_of[index]];
-            labelled || class.fixed || !class.loads.is_empty()
+            labelled || class.fixed || class.stays || !class.loads.is_empty()
         };
         let plain = |class: &Class| {
-            class.module_type == module.module_type && !class.fixed && class.loads.is_empty() && class.label.is_none()
+            class.module_type == module.module_type
+                && !class.fixed
+                && !class.stays
+                && class.loads.is_empty()
+                && class.label.is_none()
         };
         let class = match namesake.filter(is_own) {
             Some(index) => Some(class_of[index]),
@@ -231,17 +252,19 @@ fn goal_classes(
     for (index, module) in start.modules.iter().enumerate() {
         let count = |classes: &[usize]| classes.iter().filter(|&&class| class == class_of[index]).count();
         if count(class_of) != count(&wanted) {
-            if module.fixed {
+            if module.fixed || start.require.stay.contains(&index) {
                 return Err(Impossible::FixedModule { module: module.id.clone() }.into());
             }
             return Err(differ(start, goal, module.module_type));
         }
     }
-    let held = start.modules.iter().filter(|module| module.fixed);
-    for module in held {
+    let held = start.modules.iter().enumerate();
+    let held = held.filter(|(index, module)| module.fixed || start.require.stay.contains(index));
+    for (index, module) in held {
         let there = goal.modules.iter().find(|other| other.id == module.id);
         let size = classes.iter().map(|class| class.kind.size()).fold(0.0, f64::max);
-        let stays = there.is_some_and(|there| is_near(&module.pose, &there.pose, size));
+        let keeps_joints = |there: &Module| !start.require.stay.contains(&index) || there.joints == module.joints;
+        let stays = there.is_some_and(|there| is_near(&module.pose, &there.pose, size) && keeps_joints(there));
         if !stays {
             return Err(Impossible::FixedModule { module: module.id.clone() }.into());
         }

@@ -28,6 +28,13 @@ pub enum Fault<T = Touched> {
     UnknownModule,
     /// A fixed module would have to move.
     FixedModule,
+    /// A module that is not allowed to would have to move.
+    MustStay,
+    /// A module passes through a region where none may be.
+    KeepOut {
+        /// Index of the region in the start's requirement.
+        region: usize,
+    },
     /// The two faces or ports to connect do not meet.
     FacesApart,
     /// The connection to engage is engaged already.
@@ -93,6 +100,8 @@ impl<T: fmt::Display> fmt::Display for Fault<T> {
         match self {
             Self::UnknownModule => f.write_str("no such module"),
             Self::FixedModule => f.write_str("a fixed module cannot move"),
+            Self::MustStay => f.write_str("the module is not allowed to move"),
+            Self::KeepOut { region } => write!(f, "it passes through forbidden region number {region}"),
             Self::FacesApart => f.write_str("the two ports do not meet"),
             Self::NotABridge => f.write_str("what moves is held by more than the joint or connection that it turns at"),
             Self::BeyondRange => f.write_str("the joint's range ends before this position"),

@@ -202,7 +202,11 @@ fn turned(
 
 fn free_module(before: &Configuration, module: usize) -> Result<&Module, Fault> {
     let mover = &before.modules[module];
-    if mover.fixed { Err(Fault::FixedModule) } else { Ok(mover) }
+    match mover.fixed {
+        true => Err(Fault::FixedModule),
+        false if before.require.stay.contains(&module) => Err(Fault::MustStay),
+        false => Ok(mover),
+    }
 }
 
 /// The module beyond a face of a cell.

@@ -16,6 +16,7 @@ mod transit;
 use crate::robot::{Configuration, FaceConnection, Goal};
 use crate::statics::Bracket;
 
+use super::action::Action;
 use super::assembly::{Assembler, Touched};
 use super::plan::{IfStronger, Moment, Plan};
 use super::refusal::{Refusal, check};
@@ -138,6 +139,23 @@ fn run(
         oracle_solves: checker.judge.solves,
         failures: checker.judge.failures,
     })
+}
+
+/// The state after actions, each of which must be legal in the state that it is taken in; forces and collisions play no
+/// part.
+///
+/// # Errors
+/// The first action that is not legal, with why.
+pub fn after<'a>(
+    start: &Configuration,
+    actions: impl IntoIterator<Item = &'a Action>,
+) -> Result<Configuration, (usize, Fault)> {
+    let mut state = start.clone();
+    state.connections.sort_unstable();
+    for (index, action) in actions.into_iter().enumerate() {
+        state = transition(&state, action).map_err(|fault| (index, fault))?.after;
+    }
+    Ok(state)
 }
 
 /// Checks one legal action and says what margins it has.

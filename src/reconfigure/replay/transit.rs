@@ -3,7 +3,7 @@
 use petgraph::unionfind::UnionFind;
 use rayon::prelude::*;
 
-use crate::geometry::{Solid, Surroundings, first_collision};
+use crate::geometry::{Solid, Surrounding, Surroundings, first_collision};
 use crate::reconfigure::assembly::{Assembler, Engagement, Moving, Touched, Transient};
 use crate::reconfigure::refusal::Refusal;
 use crate::reconfigure::stronger::strengthen;
@@ -19,6 +19,7 @@ use super::legality::Path;
 pub(super) struct Checker<'a> {
     assembler: &'a Assembler<'a>,
     surroundings: Surroundings,
+    off_limits: Surroundings,
     /// A connection that is taken to be so many times as strong as it is.
     stronger: Option<(FaceConnection, f64)>,
     pub judge: Judge<FaceConnection, Touched>,
@@ -32,7 +33,9 @@ impl<'a> Checker<'a> {
         stronger: Option<(FaceConnection, f64)>,
     ) -> Self {
         let surroundings = Surroundings::new(&start.environment);
-        Self { assembler, surroundings, stronger, judge: Judge::new(required, start.require.connected) }
+        let off_limits = Surroundings::new(&start.require.off_limits());
+        let judge = Judge::new(required, start.require.connected);
+        Self { assembler, surroundings, off_limits, stronger, judge }
     }
 
     /// Checks a state at rest.
@@ -77,6 +80,9 @@ impl<'a> Checker<'a> {
         let first = modules.chain(around).min_by(|(a, _), (b, _)| a.total_cmp(b));
         if let Some((phase, with)) = first {
             self.judge.fail(Some(action), Some(phase), Fault::Collision { with }, None);
+        }
+        if let Some((phase, Surrounding::Obstacle(region))) = self.off_limits.first_collision(&moving, &path.motion) {
+            self.judge.fail(Some(action), Some(phase), Fault::KeepOut { region }, None);
         }
     }
 

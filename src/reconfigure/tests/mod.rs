@@ -6,6 +6,8 @@ mod motions;
 mod outcomes;
 mod ranking;
 mod reports;
+mod restrictions;
+mod stencils;
 mod tampering;
 
 use std::sync::Arc;

@@ -21,9 +21,10 @@ use petgraph::unionfind::UnionFind;
 use crate::spatial::{Pose, Vec3};
 
 use super::catalogue::Catalogue;
-use super::configuration::{Matching, ModuleLoad, Requirement};
+use super::configuration::{Matching, ModuleLoad};
 use super::environment::Environment;
 use super::module_type::ModuleType;
+use super::requirement::Requirement;
 
 pub use code::Code;
 pub use engagement::{Engagement, MEETING, frame_between, orientations_between};

@@ -18,7 +18,7 @@ impl Linkage {
         for (i, load) in self.loads.iter().enumerate() {
             load.check(&mut findings, i, self.modules.len());
         }
-        findings.finite(Part::Requirement, "margin", &[self.require.margin]);
+        self.require.check(&mut findings, self.modules.len());
         findings.0
     }
 

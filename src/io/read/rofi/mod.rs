@@ -27,7 +27,7 @@ use crate::spatial::Vec3;
 /// for another format.
 pub(super) fn parse<'a>(document: &'a Document<'a>, findings: &mut Findings) -> Option<World<'a>> {
     match document.form {
-        Form::Own => None,
+        Form::Own | Form::Tables => None,
         Form::RofiWorld => json::parse(&document.root(), findings),
         Form::RofiText => text::parse(document, findings),
         Form::RofiVoxels => voxels::parse(&document.root(), findings),

@@ -173,6 +173,9 @@ fn carry(
     if carried.iter().any(|body| body.body == 0 && before.modules[body.module].fixed) {
         return Err(Fault::FixedModule);
     }
+    if carried.iter().any(|body| before.require.stay.contains(&body.module)) {
+        return Err(Fault::MustStay);
+    }
     let mut after = before.clone();
     for body in carried.iter().filter(|body| body.body == 0) {
         after.modules[body.module].pose = motion.pose(&before.modules[body.module].pose, 1.0);

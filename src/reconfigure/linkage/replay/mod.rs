@@ -18,6 +18,7 @@ use crate::statics::Bracket;
 
 use super::action::Action;
 use super::assembly::{Assembler, Held, Touched};
+use super::state::State;
 use legality::{Transition, transition};
 use transit::Checker;
 
@@ -98,6 +99,20 @@ fn run(
     let Judge { failures, solves, .. } = checker.judge;
     let states = states(&found);
     Ok(Replay { margin, states, actions_replayed, oracle_solves: solves, failures })
+}
+
+/// The state after actions, each of which must be legal in the state that it is taken in; forces and collisions play no
+/// part. Its modules are where its connections and joints place them, to a micro-degree, however many actions there were.
+///
+/// # Errors
+/// The first action that is not legal, with why.
+pub fn after<'a>(start: &Linkage, actions: impl IntoIterator<Item = &'a Action>) -> Result<Linkage, (usize, Fault)> {
+    let mut state = start.clone();
+    state.connections.sort_unstable();
+    for (index, action) in actions.into_iter().enumerate() {
+        state = transition(&state, action).map_err(|fault| (index, fault))?.after;
+    }
+    Ok(State::new(state).linkage().clone())
 }
 
 /// Checks one legal action and says what margins it has.

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use crate::geometry::{Solid, Surroundings, first_collision};
+use crate::geometry::{Solid, Surrounding, Surroundings, first_collision};
 use crate::reconfigure::stronger::strengthen;
 use crate::robot::linkage::{Connection, Linkage};
 use crate::spatial::Pose;
@@ -17,6 +17,7 @@ use super::{Fault, Found, Judge, Refusal, Sample, claims, phases};
 pub(super) struct Checker<'a> {
     assembler: &'a Assembler<'a>,
     surroundings: Surroundings,
+    off_limits: Surroundings,
     /// What is taken to be so many times as strong as it is.
     stronger: Option<(Held, f64)>,
     pub judge: Judge<Held, Touched>,
@@ -25,7 +26,9 @@ pub(super) struct Checker<'a> {
 impl<'a> Checker<'a> {
     pub fn new(start: &Linkage, assembler: &'a Assembler<'a>, required: f64, stronger: Option<(Held, f64)>) -> Self {
         let surroundings = Surroundings::new(&start.environment);
-        Self { assembler, surroundings, stronger, judge: Judge::new(required, start.require.connected) }
+        let off_limits = Surroundings::new(&start.require.off_limits());
+        let judge = Judge::new(required, start.require.connected);
+        Self { assembler, surroundings, off_limits, stronger, judge }
     }
 
     /// Checks a state at rest.
@@ -45,6 +48,9 @@ impl<'a> Checker<'a> {
     ) -> Result<Found<Held>, Refusal> {
         if let Some((phase, with)) = first_hit(before, &self.surroundings, path) {
             self.judge.fail(Some(action), Some(phase), Fault::Collision { with }, None);
+        }
+        if let Some((phase, region)) = first_passed(before, &self.off_limits, path) {
+            self.judge.fail(Some(action), Some(phase), Fault::KeepOut { region }, None);
         }
         let phases = phases(path.steps, claimed);
         let samples = phases.par_iter().map(|&phase| self.sample(before, &poses_at(before, path, phase), phase));
@@ -99,6 +105,20 @@ fn first_hit(before: &Linkage, surroundings: &Surroundings, path: &Path) -> Opti
     let mut hits: Vec<(f64, Touched)> = hits.collect();
     hits.sort_by(|(a, _), (b, _)| a.total_cmp(b));
     hits.into_iter().next()
+}
+
+/// The first forbidden region that something passes through on its way.
+fn first_passed(before: &Linkage, off_limits: &Surroundings, path: &Path) -> Option<(f64, usize)> {
+    let poses = poses_at(before, path, 0.0);
+    let passed = path.carried.iter().filter_map(|body| {
+        let kind = &before.module_type(body.module).bodies[body.body];
+        let moving = Solid::new(kind.shape.clone(), poses[body.module][body.body] * kind.shape_pose);
+        match off_limits.first_collision(&moving, &path.motion) {
+            Some((phase, Surrounding::Obstacle(region))) => Some((phase, region)),
+            Some((_, Surrounding::Ground)) | None => None,
+        }
+    });
+    passed.min_by(|(a, _), (b, _)| a.total_cmp(b))
 }
 
 /// Whether a joint or an engaged connection holds two bodies together.

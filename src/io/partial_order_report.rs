@@ -1,0 +1,14 @@
+//! A partial order with what was asked.
+
+use crate::reconfigure::partial_order::{OrderOptions, PartialOrder, Timetable};
+
+/// What a `partial-order/1` report says of a document's best plan.
+#[derive(Clone, Copy, Debug)]
+pub struct PartialOrderReport<'a> {
+    /// What was asked.
+    pub options: &'a OrderOptions,
+    /// The answer.
+    pub order: &'a PartialOrder,
+    /// When actions run.
+    pub times: &'a Timetable,
+}
