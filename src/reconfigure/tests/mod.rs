@@ -4,6 +4,7 @@ mod agreement;
 mod heuristics;
 mod motions;
 mod outcomes;
+mod ranking;
 mod reports;
 mod restrictions;
 mod stencils;
