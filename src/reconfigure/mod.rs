@@ -10,6 +10,7 @@ pub mod assembly;
 mod assembly_laws;
 #[cfg(test)]
 mod assembly_tests;
+mod baseline;
 mod compose;
 mod course;
 mod decides;
@@ -44,6 +45,7 @@ mod worst;
 
 pub use crate::robot::{Motion, Turn};
 pub use action::Action;
+pub use baseline::Baseline;
 pub use engines::MARGIN_TOLERANCE;
 pub use layout::{Bond, Layout, Placed};
 pub use moves::Move;
