@@ -13,6 +13,7 @@ use super::linkage_plan::LinkagePlans;
 use super::outcome::{limit, outcome};
 use super::sequence::{Family, Parts, sequence};
 use crate::reconfigure::{Objective, Outcome, Proof, Report, Statistics};
+use crate::statics::Tally;
 
 /// Reads a plan for whatever robot it is.
 pub(super) fn read(root: &Place<'_>, findings: &mut Findings) -> Option<Verifiable> {
