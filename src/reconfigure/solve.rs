@@ -75,10 +75,16 @@ pub fn solve(
             }
         },
     };
+    let space = Saturated::new(&domain, ends.start_width(), ends.at_most());
+    let steps = |path: &[saturated::Action]| expand(&problem, path);
+    report.in_the_way = task.in_the_way(&space, &Plans { domain: &domain, steps }, &report, &|reached| {
+        Some(problem.unmoved(&reached.iter().map(|state| state.layout()).collect::<Vec<_>>()))
+    });
     if let Some(fault) = domain.oracle.fault() {
         return Err(Refusal::Structure(fault));
     }
     report.statistics.oracle_solves = domain.oracle.solves();
+    report.statistics.decided_by = domain.oracle.tally();
     report.statistics.seconds = began.elapsed().as_secs_f64();
     Ok(report)
 }

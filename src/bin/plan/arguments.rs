@@ -64,6 +64,9 @@ pub struct PlanningArguments {
     /// Write the plan/1 document to a file
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
+    /// Write the plan's margins over time: .csv as a table, .svg as a picture
+    #[arg(long, value_name = "FILE", value_parser = profile_file)]
+    pub profile: Option<PathBuf>,
     /// Plan by geometry alone, for comparison; `plan verify` tells where such a plan breaks
     #[arg(long)]
     pub ignore_stability: bool,
@@ -104,6 +107,17 @@ pub enum ObjectiveArgument {
     Margin,
     /// The fewest moves with at least the required margin
     Moves,
+    /// Every trade between margin and moves that no other plan beats
+    Pareto,
+}
+
+fn profile_file(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    let extension = path.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase);
+    match extension.as_deref() {
+        Some("csv" | "svg") => Ok(path),
+        _ => Err("a profile is written as .csv or .svg".to_string()),
+    }
 }
 
 fn margin(text: &str) -> Result<f64, String> {

@@ -21,6 +21,7 @@ mod order;
 mod output;
 mod parallel;
 mod polar_map;
+mod profile;
 mod progress;
 mod restrictions;
 mod schema;
