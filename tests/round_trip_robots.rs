@@ -294,7 +294,8 @@ fn outcomes() -> impl Strategy<Value = Outcome> {
 prop_compose! {
     fn statistics()(counts: [u64; 6], seconds in number()) -> Statistics {
         let [expanded, states, generated, certified, oracle_solves, bytes] = counts;
-        Statistics { expanded, states, generated, certified, oracle_solves, bytes, seconds: seconds.abs(), ..Statistics::default() }
+        let seconds = seconds.abs();
+        Statistics { expanded, states, generated, certified, oracle_solves, bytes, seconds, ..Statistics::default() }
     }
 }
 

@@ -13,7 +13,7 @@ use crate::exit::Exit;
 use crate::family::{Answer, Check, Family};
 use crate::progress::ProgressLine;
 use crate::summary::summary;
-use crate::{files, memory, output, profile};
+use crate::{files, memory, output, profile, restrictions};
 
 /// Exit code of a program that a second Ctrl-C ended at once.
 const INTERRUPTED: i32 = 130;
@@ -117,7 +117,7 @@ fn appraise<F: Family>(problem: &F, report: &mut Answer<F>, required: f64) -> Re
 fn read(arguments: &PlanningArguments) -> io::Result<Result<Problem, Exit>> {
     let (start, goal) = (files::read(&arguments.start), files::read(&arguments.goal));
     match read_problem(&start, &goal, &files::resolve) {
-        Ok(mut problem) => match arguments.restrictions.apply(&mut problem) {
+        Ok(mut problem) => match restrictions::apply(arguments, &mut problem) {
             Ok(()) => Ok(Ok(problem)),
             Err(trouble) => output::refused(&start.name, [trouble], arguments.json).map(Err),
         },

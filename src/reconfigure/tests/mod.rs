@@ -1,6 +1,7 @@
 //! Laws of actions, and the planner against unlike methods.
 
 mod agreement;
+mod carrying;
 mod heuristics;
 mod motions;
 mod outcomes;
