@@ -12,8 +12,8 @@ use steadfast::io::{
     write_configuration, write_plan,
 };
 use steadfast::reconfigure::{
-    Action, Bottleneck, Impossible, Limit, Objective, Outcome, Plan, PlannedAction, Proof, Report, Statistics, Turn,
-    Which,
+    Action, Bottleneck, IfStronger, Impossible, Limit, Moment, Objective, Outcome, Plan, PlannedAction, Proof, Report,
+    Statistics, Turn, Which,
 };
 use steadfast::robot::{
     Catalogue, Cell, Configuration, Environment, Face, FaceConnection, Goal, Ground, HeightField, Hull, Matching, Mesh,
@@ -250,7 +250,10 @@ fn plan(start: &Configuration, sketch: &Sketch, number: usize) -> (Plan, Vec<Con
     }
     let held = sketch.held.map(|(module, a, b)| connection([module.index(cells.len()); 2], [a, b]));
     let bottleneck = sketch.bottleneck.map(|(action, phase)| Bottleneck { action, phase, connection: held });
-    (Plan { margin: sketch.margin, moves: sketch.moves, bottleneck, actions }, contradictions)
+    let moment = |margin| Moment { action: Some(actions.len()), phase: 0.25, margin };
+    let profile = sketch.margin.map(moment).into_iter().collect();
+    let if_stronger = sketch.margin.map(|margin| IfStronger { factor: 2.0, margin });
+    (Plan { margin: sketch.margin, moves: sketch.moves, bottleneck, actions, profile, if_stronger }, contradictions)
 }
 
 fn limit() -> impl Strategy<Value = Limit> {
@@ -336,11 +339,12 @@ prop_compose! {
             problem: LatticeProblem { start, goal },
             report: Report {
                 outcome,
-                objective: if by_moves { Objective::Moves } else { Objective::Margin },
+                objective: if by_moves { Objective::Moves } else { Objective::Pareto },
                 required,
                 plan: plans.next(),
                 alternatives: plans.collect(),
                 alternatives_cut_by: cut_by,
+                in_the_way: None,
                 proof: Proof {
                     optimal,
                     margin_at_most: bounds.0.unwrap_or(unproved.0),

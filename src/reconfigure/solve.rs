@@ -13,7 +13,8 @@ use super::baseline::{Baseline, Blind, Eager};
 use super::compose::{compose, expand, ports};
 use super::domain::{Domain, width};
 use super::engines::{Task, Translation};
-use super::options::{Event, Options, Reduction};
+use super::large::{self, EXACT_MODULES, decompose};
+use super::options::{Event, Method, Options, Reduction};
 use super::oracle::Worst;
 use super::plan::{Plan, Report};
 use super::primitive::Primitive;
@@ -59,6 +60,10 @@ pub fn solve(
     let task = Task { options, required, began, solves: &solves };
     let mut report = match ends.reason(&domain, goal, required) {
         Some(reason) => Report::impossible(options.objective, required, reason),
+        None if is_for_decomposition(&problem, options) => {
+            let ends = large::Ends { start: ends.start, goal: ends.goal };
+            decompose(&domain, options, (required, ends), began, on_event)
+        }
         None => match options.reduction {
             Reduction::Saturated => {
                 let space = Saturated::new(&domain, ends.start_width(), ends.at_most());
@@ -83,13 +88,30 @@ pub fn solve(
             }
         },
     };
+    let space = Saturated::new(&domain, ends.start_width(), ends.at_most());
+    let steps = |path: &[saturated::Action]| expand(&problem, path);
+    report.in_the_way = task.in_the_way(&space, &Plans { domain: &domain, steps }, &report, &|reached| {
+        Some(problem.unmoved(&reached.iter().map(|state| state.layout()).collect::<Vec<_>>()))
+    });
     if let Some(fault) = domain.oracle.fault() {
         return Err(Refusal::Structure(fault));
     }
-    report.statistics.oracle_solves = domain.oracle.solves();
+    report.statistics.oracle_solves += domain.oracle.solves();
     report.statistics.decided_by = domain.oracle.tally();
     report.statistics.seconds = began.elapsed().as_secs_f64();
     Ok(report)
+}
+
+/// Whether a problem is decomposed rather than searched.
+fn is_for_decomposition(problem: &Problem, options: &Options) -> bool {
+    match options.method {
+        Method::Exact => false,
+        Method::Decompose => true,
+        Method::Auto => {
+            let movable = problem.start().modules.iter().filter(|module| !module.fixed).count();
+            movable > EXACT_MODULES && options.reduction == Reduction::Saturated && options.plans <= 1
+        }
+    }
 }
 
 /// The two ends of every plan.

@@ -3,8 +3,10 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use crate::{bench, generate};
 use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
+use steadfast::robot::Region;
+
+use crate::{bench, generate};
 
 /// Reconfiguration planner for modular robots in which every transient state is proved stable
 #[derive(Debug, Parser)]
@@ -62,6 +64,9 @@ pub struct PlanningArguments {
     /// Write the plan/1 document to a file
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
+    /// Write the plan's margins over time: .csv as a table, .svg as a picture
+    #[arg(long, value_name = "FILE", value_parser = profile_file)]
+    pub profile: Option<PathBuf>,
     /// Plan by geometry alone, for comparison; `plan verify` tells where such a plan breaks
     #[arg(long)]
     pub ignore_stability: bool,
@@ -71,6 +76,17 @@ pub struct PlanningArguments {
     /// How to look for plans of lattice robots
     #[arg(long, value_enum, default_value_t = PlannerArgument::Auto)]
     pub planner: PlannerArgument,
+    /// A module that no action may move, though nothing else holds it; may be given several times
+    #[arg(long, value_name = "ID")]
+    pub forbid_module: Vec<String>,
+    /// A box that no move may pass through, by its lowest and highest corner in m; may be given several times
+    #[arg(
+        long,
+        value_name = "X0,Y0,Z0,X1,Y1,Z1",
+        value_parser = crate::restrictions::region,
+        allow_hyphen_values = true
+    )]
+    pub forbid_region: Vec<Region>,
 }
 
 /// `--planner`.
@@ -91,6 +107,17 @@ pub enum ObjectiveArgument {
     Margin,
     /// The fewest moves with at least the required margin
     Moves,
+    /// Every trade between margin and moves that no other plan beats
+    Pareto,
+}
+
+fn profile_file(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    let extension = path.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase);
+    match extension.as_deref() {
+        Some("csv" | "svg") => Ok(path),
+        _ => Err("a profile is written as .csv or .svg".to_string()),
+    }
 }
 
 fn margin(text: &str) -> Result<f64, String> {

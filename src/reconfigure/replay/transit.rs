@@ -6,9 +6,11 @@ use rayon::prelude::*;
 use crate::geometry::{Solid, Surrounding, Surroundings, first_collision};
 use crate::reconfigure::assembly::{Assembler, Engagement, Moving, Touched, Transient};
 use crate::reconfigure::refusal::Refusal;
+use crate::reconfigure::stronger::strengthen;
 use crate::robot::{Configuration, FaceConnection, Placement, Port};
 use crate::statics::{Question, assess};
 
+use super::bounded::Bounds;
 use super::claims;
 use super::failure::Fault;
 use super::judge::{Found, Judge, Sample, phases};
@@ -19,18 +21,38 @@ pub(super) struct Checker<'a> {
     assembler: &'a Assembler<'a>,
     surroundings: Surroundings,
     off_limits: Surroundings,
+    /// A connection that is taken to be so many times as strong as it is.
+    stronger: Option<(FaceConnection, f64)>,
+    pub bounds: Bounds<'a>,
     pub judge: Judge<FaceConnection, Touched>,
 }
 
 impl<'a> Checker<'a> {
-    pub fn new(start: &'a Configuration, assembler: &'a Assembler<'a>, required: f64) -> Self {
+    pub fn new(
+        start: &'a Configuration,
+        assembler: &'a Assembler<'a>,
+        required: f64,
+        stronger: Option<(FaceConnection, f64)>,
+    ) -> Self {
         let surroundings = Surroundings::new(&start.environment);
         let off_limits = Surroundings::new(&start.require.off_limits());
-        Self { assembler, surroundings, off_limits, judge: Judge::new(required, start.require.connected) }
+        let judge = Judge::new(required, start.require.connected);
+        Self { assembler, surroundings, off_limits, stronger, bounds: Bounds::new(start), judge }
     }
 
-    /// Checks a state at rest.
-    pub fn rest(&mut self, action: Option<usize>, state: &Configuration) -> Result<Found<FaceConnection>, Refusal> {
+    /// Checks a state at rest: whether it has a margin, by bounds with one of two modules hanging on the others, where
+    /// that is enough; else its value.
+    pub fn rest(
+        &mut self,
+        action: Option<usize>,
+        state: &Configuration,
+        bounded: Option<(f64, [Option<usize>; 2])>,
+    ) -> Result<Found<FaceConnection>, Refusal> {
+        if let Some((least, hanging)) = bounded
+            && let Some(sample) = self.bounds.at_rest(state, hanging.into_iter().flatten(), least)
+        {
+            return Ok(self.judge.rest(action, sample));
+        }
         let placements: Vec<Placement> = state.modules.iter().map(|module| module.placement).collect();
         let engaged: Vec<_> = state.connections.iter().map(|c| Engagement::face(state, c)).collect();
         let at_rest = Transient { placements: &placements, moving: None, engaged: &engaged };
@@ -38,18 +60,23 @@ impl<'a> Checker<'a> {
         Ok(self.judge.rest(action, sample))
     }
 
-    /// Checks a move from a state on a fixed grid of phases, and at those claimed.
+    /// Checks a move from a state on a fixed grid of phases, and at those claimed: whether it has a margin, by bounds,
+    /// where that is enough; else its values.
     pub fn transit(
         &mut self,
         action: usize,
         before: &Configuration,
         path: &Path,
         claimed: &[f64],
+        bound: Option<f64>,
     ) -> Result<Found<FaceConnection>, Refusal> {
         self.collide(action, before, path);
+        let phases = phases(path.steps, claimed);
+        if let Some(samples) = bound.and_then(|least| self.bounds.of_move(before, path, &phases, least)) {
+            return Ok(self.judge.transit(action, samples));
+        }
         let placements: Vec<Placement> = before.modules.iter().map(|module| module.placement).collect();
         let start = before.pose(path.module);
-        let phases = phases(path.steps, claimed);
         let samples = phases.par_iter().map(|&phase| {
             let moving = Moving { module: path.module, pose: path.motion.pose(&start, phase) };
             let state = Transient { placements: &placements, moving: Some(moving), engaged: &path.engaged };
@@ -83,7 +110,11 @@ impl<'a> Checker<'a> {
         state: &Transient,
         phase: f64,
     ) -> Result<Sample<FaceConnection>, Refusal> {
-        let assembly = self.assembler.assemble(state);
+        let mut assembly = self.assembler.assemble(state);
+        if let Some((held, factor)) = self.stronger {
+            let is_it = |index: usize| ports(modules, &state.engaged[assembly.connections[index]]) == held;
+            strengthen(&mut assembly.structure, factor, is_it);
+        }
         let assessment = assess(&assembly.structure, Question::VALUE).map_err(Refusal::Structure)?;
         let connection = |i: usize| ports(modules, &state.engaged[assembly.connections[i]]);
         let limit = assessment.utilisation.lower * (1.0 - claims::AT_LIMIT);

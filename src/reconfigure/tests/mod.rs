@@ -5,6 +5,7 @@ mod carrying;
 mod heuristics;
 mod motions;
 mod outcomes;
+mod ranking;
 mod reports;
 mod restrictions;
 mod stencils;
