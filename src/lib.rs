@@ -64,8 +64,9 @@
 //! Each uses only what stands before it: [`spatial`] (poses, wrenches, twists),
 //! [`statics`] (the oracle), [`certificate`] (proofs of its answers and their checker),
 //! [`robot`] (module types, configurations), [`geometry`] (contacts and sweeps),
-//! [`reconfigure`] (actions, transient states, plans), [`io`] (files). The search
-//! engines are the package `planners`, which knows no robots.
+//! [`reconfigure`] (actions, transient states, plans), [`generate`] (random problems), [`suite`] (many
+//! of them, and what can be said about the answers), [`io`] (files). The search engines are the package `planners`,
+//! which knows no robots.
 //!
 //! # Asking the oracle
 //!

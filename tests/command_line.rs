@@ -467,6 +467,41 @@ fn a_motion_range_is_a_table_and_a_picture() {
     }
 }
 
+#[test]
+fn what_may_run_at_the_same_time_is_told_drawn_and_written() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = |name: &str| directory.path().join(name).display().to_string();
+    let (start, goal) = ("cubes/overhang/start.json", "cubes/overhang/goal.json");
+    let found = plan(&[start, goal, "--objective", "moves", "--out", &path("plan.json")]);
+    assert_eq!(found.status.code(), Some(0));
+    let told = plan(&["parallel", &path("plan.json"), "--svg", &path("times.svg"), "--dot", &path("order.dot")]);
+    assert_eq!(told.status.code(), Some(0));
+    assert!(stdout(&told).contains("waves"), "{}", stdout(&told));
+    assert!(std::fs::read_to_string(path("times.svg")).unwrap().starts_with("<svg"));
+    assert!(std::fs::read_to_string(path("order.dot")).unwrap().contains("1 -> "));
+    let written = stdout(&plan(&["parallel", &path("plan.json"), "--json"]));
+    let value: serde_json::Value = serde_json::from_str(&written).unwrap();
+    assert_eq!(value["format"], "partial-order/1");
+    assert!(value["makespan"].as_f64() <= value["one_by_one"].as_f64());
+    assert_eq!(plan(&["parallel", "valid/structure.json"]).status.code(), Some(30));
+}
+
+#[test]
+fn what_is_forbidden_is_kept_in_the_plan_file() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("plan.json").display().to_string();
+    let problem = ["cubes/overhang/start.json", "cubes/overhang/goal.json", "--objective", "moves", "--out", &path];
+    let forbid = |more: &[&str]| plan(&[&problem[..], more].concat()).status.code();
+    assert_eq!(forbid(&["--forbid-module", "nobody"]), Some(30));
+    assert_eq!(forbid(&["--forbid-region", "0,0,0,1,1"]), Some(2));
+    // Somewhere else, so that the plan is what it was, and verifies with the region in it.
+    assert_eq!(forbid(&["--forbid-region", "5,5,5,6,6,6"]), Some(0));
+    assert!(std::fs::read_to_string(&path).unwrap().contains("keep_out"));
+    assert_eq!(plan(&["verify", &path]).status.code(), Some(0));
+    // Everywhere: nothing can move at all.
+    assert_eq!(forbid(&["--forbid-region=-9,-9,-9,9,9,9"]), Some(10));
+}
+
 /// A robot goes through formats and is still where it was: the plan from one file to the other is empty.
 #[test]
 fn robots_are_converted_there_and_back() {

@@ -186,6 +186,8 @@ fn plan(linkage: &Linkage, drafts: &[Draft], margin: Option<Bracket>) -> Plan<Ac
         moves: drafts.len() as u32,
         bottleneck: Some(Bottleneck { action: Some(0), phase: 0.25, connection: held }),
         actions: drafts.iter().map(action).collect(),
+        profile: margin.into_iter().map(|margin| Moment { action: Some(0), phase: 0.5, margin }).collect(),
+        if_stronger: margin.map(|margin| IfStronger { factor: 2.0, margin }),
     }
 }
 

@@ -250,7 +250,9 @@ fn plan(start: &Configuration, sketch: &Sketch, number: usize) -> (Plan, Vec<Con
     }
     let held = sketch.held.map(|(module, a, b)| connection([module.index(cells.len()); 2], [a, b]));
     let bottleneck = sketch.bottleneck.map(|(action, phase)| Bottleneck { action, phase, connection: held });
-    (Plan { margin: sketch.margin, moves: sketch.moves, bottleneck, actions }, contradictions)
+    let (profile, if_stronger) =
+        (profile(sketch.margin), sketch.margin.map(|margin| IfStronger { factor: 2.0, margin }));
+    (Plan { margin: sketch.margin, moves: sketch.moves, bottleneck, actions, profile, if_stronger }, contradictions)
 }
 
 fn limit() -> impl Strategy<Value = Limit> {

@@ -142,6 +142,11 @@ impl<'a, S: Space> Graph<'a, S> {
         self.seen_from(End::Start, from)
     }
 
+    /// Transitions out of a state, none if it has not been expanded.
+    pub fn known_successors(&self, from: StateId) -> &[Edge<S::Action>] {
+        self.edges[from as usize].as_deref().unwrap_or_default()
+    }
+
     /// Upper bounds on the widths of all transitions that are known.
     pub fn known_widths(&self) -> impl Iterator<Item = f64> {
         self.edges.iter().flatten().flatten().map(|edge| edge.width.upper)

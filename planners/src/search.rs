@@ -99,6 +99,24 @@ impl<'a, S: Space> Search<'a, S> {
         if width.is_finite() { width - self.tolerance * width.abs().max(1.0) } else { width }
     }
 
+    /// The states that certified transitions at least as wide as `floor` lead to from the start, nearest first: after a
+    /// [search](Search::shortest) with this floor that proved its goals out of reach, all that there are.
+    pub fn reached(&self, floor: f64) -> Vec<&S::State> {
+        let mut seen = vec![false; self.graph.states()];
+        let mut reached = vec![START];
+        seen[START as usize] = true;
+        let mut next = 0;
+        while let Some(&state) = reached.get(next) {
+            next += 1;
+            for edge in self.graph.known_successors(state) {
+                if is_wide_enough(edge.width.lower, floor) && !std::mem::replace(&mut seen[edge.to as usize], true) {
+                    reached.push(edge.to);
+                }
+            }
+        }
+        reached.into_iter().map(|id| self.graph.state(id)).collect()
+    }
+
     /// Books what has been done, with the memory of queues and labels.
     pub(crate) fn book(&mut self, open_bytes: usize) {
         let counted = || self.graph.bytes() + open_bytes + self.graph.space().memory_bytes();

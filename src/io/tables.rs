@@ -50,8 +50,11 @@ fn node(spanned: &Spanned<DeValue<'_>>, faults: &mut Vec<Fault>) -> Node {
             _ => not_a_number(at, faults),
         }),
         DeValue::Boolean(value) => Value::Bool(*value),
-        // No format has dates: it is said that something else is expected.
-        DeValue::Datetime(date) => Value::String(date.to_string().into()),
+        DeValue::Datetime(date) => {
+            let message = "a date, where no format has one";
+            faults.push(Fault::new(codes::WRONG_TYPE, at, message, "put it in quotes if it is meant as a text"));
+            Value::String(date.to_string().into())
+        }
         DeValue::Array(items) => Value::Array(items.iter().map(|item| node(item, faults)).collect()),
         DeValue::Table(members) => table(members, faults),
     };

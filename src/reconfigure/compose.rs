@@ -58,7 +58,7 @@ struct Run<'a> {
 impl<'a> Run<'a> {
     fn new(domain: &'a Domain<'a>) -> Self {
         let problem = domain.problem;
-        let plan = Plan { margin: None, moves: 0, bottleneck: None, actions: Vec::new() };
+        let plan = Plan::EMPTY;
         let (layout, bonds) = (problem.start_layout().clone(), problem.start_bonds().to_vec());
         let mut run = Self { domain, configuration: problem.start().clone(), layout, bonds, plan };
         if domain.stability {

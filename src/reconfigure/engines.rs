@@ -4,12 +4,14 @@
 //! Knows objectives, budgets and proofs; does not know what a state or an action is.
 
 use std::cell::RefCell;
+use std::collections::VecDeque;
 use std::hash::Hash;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
-use planners::{Budget, PathOf, Progress, Search, Shortest, Space};
+use planners::{Budget, Limit, PathOf, Progress, Search, Shortest, Space};
 
 use super::herald::Herald;
+use super::in_the_way::InTheWay;
 use super::options::{Event, Options};
 use super::plan::{Objective, Outcome, Plan, Proof, Report, Statistics};
 use super::refusal::Impossible;
@@ -17,6 +19,12 @@ use super::refusal::Impossible;
 /// Two margins this close, relative to the larger of 1 and the margin, are
 /// equally good: what the oracle's brackets are guaranteed to resolve.
 pub const MARGIN_TOLERANCE: f64 = 1e-6;
+
+/// Expansions that an explanation has at least.
+const EXPLANATION: u64 = 2000;
+
+/// Time that an explanation has at least, where there is a limit at all.
+const SHORTEST_EXPLANATION: Duration = Duration::from_secs(1);
 
 /// How paths of a space become plans of a robot.
 pub trait Translation<S: Space> {
@@ -81,42 +89,30 @@ impl Task<'_> {
             herald.borrow_mut().plan(plan, (self.solves)());
         };
         let mut search = Search::new(space, self.search_options()).on_progress(&mut on_progress);
-        let outcome = match self.options.objective {
-            Objective::Margin => search.anytime_margin(floor, shortest, &mut on_path),
-            Objective::Moves => search.anytime_shortest(floor, shortest, &mut on_path),
+        let answer = match self.options.objective {
+            Objective::Margin | Objective::Moves => {
+                self.ranked(&mut search, shortest, floor, translation, &mut on_path)
+            }
+            Objective::Pareto => Answer::of_front(search.pareto(floor, shortest, &mut on_path)),
         };
-        let mut found: Vec<Vec<S::Action>> = outcome.best().map(actions::<S>).into_iter().collect();
-        let mut cut_by = outcome.limit();
-        if let planners::Outcome::Solved { found: best, .. } = &outcome
-            && self.options.plans > 1
-        {
-            let as_good = match self.options.objective {
-                Objective::Margin => search.tie(best.width.lower).max(floor),
-                Objective::Moves => floor,
-            };
-            let key = |path: &[S::Action]| translation.key(path);
-            let further = search.k_best(self.options.plans, as_good, key);
-            further_plans(&mut found, further.best().into_iter().flatten().map(actions::<S>), key);
-            found.truncate(self.options.plans);
-            cut_by = further.limit();
-        }
-        let wants_more = self.options.plans > 1 && found.len() < self.options.plans;
         let statistics = search.statistics();
         drop(search);
-        // The best one was told before it was returned.
-        let plan = outcome.best().map(|best| match told {
-            Some((cost, width, plan)) if (cost, width) == (best.cost, best.width) => plan,
-            _ => translation.plan(&actions::<S>(best)),
+        let plans = answer.found.iter().enumerate().map(|(index, path)| match &told {
+            // The best one was told before it was returned.
+            Some((cost, width, plan)) if index == 0 && (*cost, *width) == (path.cost, path.width) => plan.clone(),
+            _ => translation.plan(&actions::<S>(path)),
         });
-        let plans = found.iter().skip(1).map(|path| translation.plan(path));
-        let (ending, proof) = self.conclude(&outcome, plan.is_some());
+        let mut plans: VecDeque<_> = plans.collect();
+        let plan = plans.pop_front();
+        let (ending, proof) = self.conclude(&answer, plan.is_some());
         Report {
             outcome: ending,
             objective: self.options.objective,
             required: self.required,
             plan,
-            alternatives: plans.collect(),
-            alternatives_cut_by: cut_by.filter(|_| wants_more),
+            alternatives: plans.into(),
+            alternatives_cut_by: answer.cut_by,
+            in_the_way: None,
             proof,
             statistics: Statistics {
                 expanded: statistics.expanded,
@@ -140,20 +136,90 @@ impl Task<'_> {
         planners::Options { tolerance: MARGIN_TOLERANCE, budget, ..planners::Options::default() }
     }
 
-    fn conclude<P, C>(&self, outcome: &planners::Outcome<P>, has_plan: bool) -> (Outcome<C>, Proof) {
+    /// What is in the way of a plan, by a search that takes about as long again as the one before. `unmoved` says which
+    /// modules are where they were at the start in all of some states.
+    pub fn in_the_way<S: Space, T: Translation<S>>(
+        &self,
+        space: &S,
+        translation: &T,
+        report: &ReportOf<T, S>,
+        unmoved: &dyn Fn(&[&S::State]) -> Option<Vec<usize>>,
+    ) -> Option<InTheWay<T::Action, T::Connection>>
+    where
+        T::Connection: Copy + PartialEq,
+    {
+        let is_cancelled = matches!(report.outcome, Outcome::OutOfBudget(Limit::Cancelled));
+        let is_asked = self.options.explain && report.plan.is_none() && !is_cancelled;
+        let required = self.required.filter(|_| is_asked)?;
+        let mut options = self.search_options();
+        options.budget.deadline = self.options.time_limit.map(|_| {
+            let so_far = self.began.elapsed();
+            Instant::now() + (so_far / 4).max(SHORTEST_EXPLANATION)
+        });
+        options.budget.max_expansions = Some(report.statistics.expanded.saturating_mul(2).max(EXPLANATION));
+        let mut search = Search::new(space, options);
+        let widest = search.widest(f64::NEG_INFINITY);
+        let plan = widest.best().map(|path| translation.plan(&actions::<S>(path)));
+        let at_most = widest.proof().map_or(f64::NEG_INFINITY, |proof| proof.width_at_most);
+        let mut found = InTheWay::new(plan, at_most, required);
+        found.cut_by = widest.limit();
+        // The goal is out of reach with the margin required: the search sees every state that is not.
+        if matches!(search.shortest(required), planners::Outcome::Impossible) {
+            found.never_move = unmoved(&search.reached(required));
+        }
+        Some(found)
+    }
+
+    /// The best path, and where more are wanted those that come next.
+    fn ranked<S: Space, T: Translation<S>>(
+        &self,
+        search: &mut Search<'_, S>,
+        shortest: Shortest<'_, S>,
+        floor: f64,
+        translation: &T,
+        on_path: &mut dyn FnMut(&PathOf<S>),
+    ) -> Answer<PathOf<S>> {
+        let is_by_margin = self.options.objective == Objective::Margin;
+        let outcome = match is_by_margin {
+            true => search.anytime_margin(floor, shortest, on_path),
+            false => search.anytime_shortest(floor, shortest, on_path),
+        };
+        let mut answer = Answer::of_best(outcome);
+        if let (Ending::Solved, Some(best)) = (answer.ending, answer.found.first())
+            && self.options.plans > 1
+        {
+            let key = |path: &[S::Action]| translation.key(path);
+            let width = best.width.lower;
+            let further = match is_by_margin {
+                true => search.ranked(self.options.plans, floor, width, key),
+                false => search.k_best(self.options.plans, floor, key),
+            };
+            for path in further.best().into_iter().flatten() {
+                let is_new = |known: &PathOf<S>| key(&actions::<S>(known)) != key(&actions::<S>(path));
+                if answer.found.len() < self.options.plans && answer.found.iter().all(is_new) {
+                    answer.found.push(path.clone());
+                }
+            }
+            answer.cut_by = further.limit().filter(|_| answer.found.len() < self.options.plans);
+        }
+        answer
+    }
+
+    fn conclude<P, C>(&self, answer: &Answer<P>, has_plan: bool) -> (Outcome<C>, Proof) {
         let optimal = |proof: &planners::Proof| match self.options.objective {
             Objective::Margin => proof.cost_optimal && (proof.width_optimal || self.required.is_none()),
             Objective::Moves => proof.cost_optimal,
+            Objective::Pareto => answer.ending == Ending::Solved,
         };
-        let ending = match outcome {
-            planners::Outcome::Solved { .. } => Outcome::Solved,
-            planners::Outcome::Impossible => {
+        let ending = match answer.ending {
+            Ending::Solved => Outcome::Solved,
+            Ending::Impossible => {
                 let required = self.required.unwrap_or(f64::NEG_INFINITY);
                 Outcome::Impossible(Impossible::Exhausted { required })
             }
-            planners::Outcome::OutOfBudget { limit, .. } => Outcome::OutOfBudget(*limit),
+            Ending::OutOfBudget(limit) => Outcome::OutOfBudget(limit),
         };
-        let proof = outcome.proof().map_or(Proof::NOTHING_TO_FIND, |proof| Proof {
+        let proof = answer.proof.as_ref().map_or(Proof::NOTHING_TO_FIND, |proof| Proof {
             optimal: has_plan && optimal(proof),
             margin_at_most: proof.width_at_most,
             moves_at_least: proof.cost_at_least,
@@ -162,16 +228,45 @@ impl Task<'_> {
     }
 }
 
+/// How a search ended.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Ending {
+    Solved,
+    Impossible,
+    OutOfBudget(Limit),
+}
+
+/// What the engines answer, whichever they are.
+struct Answer<P> {
+    ending: Ending,
+    /// Best first.
+    found: Vec<P>,
+    proof: Option<planners::Proof>,
+    /// What ended the search for further paths.
+    cut_by: Option<Limit>,
+}
+
+impl<P> Answer<P> {
+    fn of_best(outcome: planners::Outcome<P>) -> Self {
+        let proof = outcome.proof().copied();
+        let (ending, found) = match outcome {
+            planners::Outcome::Solved { found, .. } => (Ending::Solved, Some(found)),
+            planners::Outcome::Impossible => (Ending::Impossible, None),
+            planners::Outcome::OutOfBudget { limit, best, .. } => (Ending::OutOfBudget(limit), best),
+        };
+        Self { ending, found: found.into_iter().collect(), proof, cut_by: None }
+    }
+
+    /// A front, the widest first.
+    fn of_front(outcome: planners::Outcome<Vec<P>>) -> Self {
+        let Answer { ending, found, proof, cut_by } = Answer::of_best(outcome);
+        let mut found: Vec<P> = found.into_iter().flatten().collect();
+        found.reverse();
+        Self { ending, found, proof, cut_by }
+    }
+}
+
 /// What a path does.
 fn actions<S: Space>(path: &PathOf<S>) -> Vec<S::Action> {
     path.steps.iter().map(|step| step.action.clone()).collect()
-}
-
-/// Adds the paths that are not among those found by their key.
-fn further_plans<A, K: Eq>(found: &mut Vec<Vec<A>>, further: impl Iterator<Item = Vec<A>>, key: impl Fn(&[A]) -> K) {
-    for path in further {
-        if found.iter().all(|known| key(known) != key(&path)) {
-            found.push(path);
-        }
-    }
 }

@@ -45,8 +45,8 @@ pub struct Options {
     pub objective: Objective,
     /// Margin that every transient state must have, where it is more than the start requires.
     pub min_margin: Option<f64>,
-    /// How many plans; 0 counts as 1. With [`Objective::Margin`] further plans have
-    /// the best margin too, with [`Objective::Moves`] the required one.
+    /// How many plans; 0 counts as 1. They are the best ones by margin and then by moves, with [`Objective::Moves`]
+    /// those of the fewest moves; [`Objective::Pareto`] has as many as its front.
     pub plans: usize,
     /// Time to stop after; plans in the middle of a check finish it.
     pub time_limit: Option<Duration>,
@@ -59,6 +59,8 @@ pub struct Options {
     pub measure_bytes: Option<fn() -> Option<usize>>,
     /// Set it from any thread to stop.
     pub cancel: Option<Arc<AtomicBool>>,
+    /// Where no plan is found, say [what is in the way](super::InTheWay): a search of its own, for about as long again.
+    pub explain: bool,
     /// Plan by geometry and connectedness alone, for comparison.
     pub ignore_stability: bool,
     /// What the search goes by.

@@ -4,9 +4,10 @@
 //! connection of it. Without parameters they are those of a lattice.
 
 use crate::robot::FaceConnection;
-use crate::statics::Bracket;
+use crate::statics::{Bracket, Tally};
 
 use super::action::Action;
+use super::in_the_way::InTheWay;
 use super::refusal::Impossible;
 
 pub use planners::Limit;
@@ -19,6 +20,9 @@ pub enum Objective {
     Margin,
     /// The fewest moves whose margin is at least the required one.
     Moves,
+    /// Every trade between the two that no other plan beats: first the plan of the largest margin, then those with fewer
+    /// moves and smaller margins.
+    Pareto,
 }
 
 /// An action with what it is worth.
@@ -46,6 +50,26 @@ pub struct Bottleneck<C = FaceConnection> {
     pub connection: Option<C>,
 }
 
+/// One of the states that a plan passes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Moment {
+    /// Index of the action; `None` for the start as it is.
+    pub action: Option<usize>,
+    /// Phase of the action, from 0 to 1; 1 also at rest after it.
+    pub phase: f64,
+    /// Margin then.
+    pub margin: Bracket,
+}
+
+/// What a plan would be worth if the connection at its bottleneck were stronger.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct IfStronger {
+    /// How many times as strong, wherever the same two ports hold each other, or the same joint.
+    pub factor: f64,
+    /// Smallest margin of the same plan's states then, on the grid of a replay.
+    pub margin: Bracket,
+}
+
 /// A sequence of actions from the start to the goal.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan<A = Action, C = FaceConnection> {
@@ -58,6 +82,16 @@ pub struct Plan<A = Action, C = FaceConnection> {
     pub bottleneck: Option<Bottleneck<C>>,
     /// What to do.
     pub actions: Vec<PlannedAction<A>>,
+    /// Margins over time, on the grid of a replay; empty until the plan is [appraised](super::replay::appraise).
+    pub profile: Vec<Moment>,
+    /// What a stronger bottleneck would gain; `None` until the plan is appraised, or where no connection is the weakest.
+    pub if_stronger: Option<IfStronger>,
+}
+
+impl<A, C> Plan<A, C> {
+    /// The plan that does nothing, before anything is known of it.
+    pub(super) const EMPTY: Self =
+        Self { margin: None, moves: 0, bottleneck: None, actions: Vec::new(), profile: Vec::new(), if_stronger: None };
 }
 
 /// How planning ended.
@@ -75,12 +109,12 @@ pub enum Outcome<C = FaceConnection> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Proof {
     /// Whether the plan is the best by its objective, within the tolerance of
-    /// margins.
+    /// margins; for [`Objective::Pareto`] whether the plans are the whole front.
     pub optimal: bool,
     /// No plan has a larger margin; infinite where plans are made by geometry alone.
     pub margin_at_most: f64,
     /// No plan with the margin required, or with the best one for
-    /// [`Objective::Margin`], has fewer moves.
+    /// [`Objective::Margin`], has fewer moves; for [`Objective::Pareto`], none that those found do not match.
     pub moves_at_least: u32,
 }
 
@@ -97,6 +131,8 @@ pub struct Statistics {
     pub certified: u64,
     /// Structures that the oracle assessed.
     pub oracle_solves: u64,
+    /// What it took to assess them, of lattice robots; not part of a plan file.
+    pub decided_by: Tally,
     /// Peak memory of the search, in approximate bytes.
     pub bytes: u64,
     /// Wall-clock time in s.
@@ -122,11 +158,14 @@ pub struct Report<A = Action, C = FaceConnection> {
     pub required: Option<f64>,
     /// The best plan found.
     pub plan: Option<Plan<A, C>>,
-    /// Further plans, best first, that differ in more than the order of independent moves.
+    /// Further plans, best first, that differ in more than the order of independent moves: those that come next by margin and
+    /// then by moves, for [`Objective::Moves`] by moves, for [`Objective::Pareto`] the rest of the front.
     pub alternatives: Vec<Plan<A, C>>,
     /// What ended the search for further plans before there were as many as
     /// asked for; `None` where these are all that exist, or enough.
     pub alternatives_cut_by: Option<Limit>,
+    /// What is in the way of a plan, where none was found and that was asked for.
+    pub in_the_way: Option<InTheWay<A, C>>,
     /// What was proved.
     pub proof: Proof,
     /// What it took.
@@ -143,6 +182,7 @@ impl<A, C> Report<A, C> {
             plan: None,
             alternatives: Vec::new(),
             alternatives_cut_by: None,
+            in_the_way: None,
             proof: Proof::NOTHING_TO_FIND,
             statistics: Statistics::default(),
         }

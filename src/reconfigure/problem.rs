@@ -114,6 +114,16 @@ impl Problem {
         self.start.require.connected
     }
 
+    /// The modules of the start, not fixed, whose places are filled by the like of them in all of these layouts.
+    pub fn unmoved(&self, layouts: &[&Layout]) -> Vec<usize> {
+        let modules = self.start.modules.iter().zip(&self.class_of).enumerate();
+        let stays = |cell: Cell, class: u16| {
+            layouts.iter().all(|layout| layout.at(cell).is_some_and(|at| layout.placed()[at].class == class))
+        };
+        let unmoved = modules.filter(|(_, (module, class))| !module.fixed && stays(module.placement.cell, **class));
+        unmoved.map(|(index, _)| index).collect()
+    }
+
     /// A placement for every module of the start that represents `layout`: the
     /// modules of each class fill its cells in ascending order.
     pub fn placements(&self, layout: &Layout) -> Vec<Placement> {

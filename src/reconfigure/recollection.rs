@@ -52,7 +52,7 @@ impl Recollection {
     /// Approximate memory, in bytes.
     pub fn bytes(&self) -> usize {
         let kept = self.0.lock().expect("no thread panics while it holds memories");
-        kept.order.iter().map(|layout| layout.placed().len() * BYTES).sum()
+        kept.order.front().map_or(0, |layout| kept.order.len() * layout.placed().len() * BYTES)
     }
 }
 

@@ -28,6 +28,13 @@ pub struct State {
     arrived: bool,
 }
 
+impl State {
+    /// Where the modules are.
+    pub fn layout(&self) -> &Layout {
+        &self.layout
+    }
+}
+
 /// A transition.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Action {

@@ -43,8 +43,6 @@ mod batch;
 mod changes;
 mod job;
 mod robot;
-#[cfg(test)]
-mod tests;
 
 use std::time::Instant;
 

@@ -1,5 +1,6 @@
 //! What is to be run.
 
+use std::collections::BTreeSet;
 use std::time::Duration;
 
 use crate::generate::{Family, GoalKind, Request, Setting};
@@ -93,15 +94,9 @@ pub struct Job {
 impl Suite {
     /// The jobs in the order of the suite, each once: case by case, and problem by problem within a case.
     pub fn jobs(&self) -> Vec<Job> {
-        let mut jobs: Vec<Job> = Vec::new();
-        for case in &self.cases {
-            for job in case.jobs(&self.limits) {
-                if jobs.iter().all(|other| other.name() != job.name()) {
-                    jobs.push(job);
-                }
-            }
-        }
-        jobs
+        let mut names = BTreeSet::new();
+        let all = self.cases.iter().flat_map(|case| case.jobs(&self.limits));
+        all.filter(|job| names.insert(job.name())).collect()
     }
 }
 
@@ -178,5 +173,6 @@ pub const fn objective_name(objective: Objective) -> &'static str {
     match objective {
         Objective::Margin => "margin",
         Objective::Moves => "moves",
+        Objective::Pareto => "pareto",
     }
 }

@@ -9,9 +9,11 @@ use crate::reconfigure::{
     Event, Limit, Method, News, Options, Outcome, Plan, Proof, Reduction, Refusal, Report, Statistics, linkage, solve,
 };
 
+use crate::statics::{self, Rung};
+
 use super::job::{Job, Planner};
 use super::plan::AnyPlan;
-use super::record::{Ending, Found, Point, Record};
+use super::record::{Ending, Found, Point, Record, Tally};
 
 /// What a job answered.
 #[derive(Clone, Debug, PartialEq)]
@@ -126,6 +128,7 @@ impl<'a, 'b> Diary<'a, 'b> {
             alternatives: Vec::new(),
             alternatives_cut_by: None,
             proof: Proof { optimal: false, margin_at_most, moves_at_least },
+            in_the_way: None,
             statistics: Statistics { seconds, ..Statistics::default() },
         }
     }
@@ -154,9 +157,22 @@ fn base<A, C>(job: &Job, report: &Report<A, C>) -> Record {
         margin_at_most: report.proof.margin_at_most,
         moves_at_least: report.proof.moves_at_least,
         statistics: report.statistics,
-        rungs: Vec::new(),
+        rungs: rungs(&report.statistics.decided_by),
         peak_bytes: None,
     }
+}
+
+/// How often each rung of the oracle's ladder answered, of those that did.
+fn rungs(tally: &statics::Tally) -> Tally {
+    let name = |rung| match rung {
+        Rung::ClosedForm => "closed form",
+        Rung::CarriedOver => "carried over",
+        Rung::StoppedEarly => "stopped early",
+        Rung::Solved => "solved",
+        Rung::SolvedGenerally => "solved generally",
+    };
+    let counts = Rung::ALL.into_iter().map(|rung| (name(rung).to_string(), tally.of(rung)));
+    counts.filter(|(_, times)| *times > 0).collect()
 }
 
 fn refused(job: &Job, why: String) -> Record {

@@ -143,7 +143,7 @@ fn row(modules: usize, group: &[Entry<'_>]) -> Row {
     let solved: Vec<&Record> = records().filter(|record| record.is_solved()).collect();
     let median = |value: &dyn Fn(&Record) -> f64| lower_median(&records().map(value).collect::<Vec<_>>());
     let mut open: Vec<(&'static str, usize)> = Vec::new();
-    for word in records().filter(|record| !record.is_decided()).map(|record| ending_word(&record.ending)) {
+    for word in records().filter(|record| !record.is_decided()).map(ending_word) {
         match open.iter_mut().find(|(known, _)| *known == word) {
             Some((_, count)) => *count += 1,
             None => open.push((word, 1)),
@@ -177,8 +177,9 @@ fn row(modules: usize, group: &[Entry<'_>]) -> Row {
 }
 
 /// How a job that decided nothing ended, in words.
-fn ending_word(ending: &Ending) -> &'static str {
-    match ending {
+fn ending_word(record: &Record) -> &'static str {
+    match &record.ending {
+        _ if record.breaks() == Some(true) => "a plan that breaks the robot",
         Ending::Solved => "plan not confirmed, or not proved to be the best",
         Ending::Impossible => "no plan exists",
         Ending::Stopped(Limit::Deadline) | Ending::Overran => "time limit",

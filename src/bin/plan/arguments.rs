@@ -6,6 +6,8 @@ use std::time::Duration;
 use crate::{bench, generate};
 use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
 
+use crate::restrictions::Restrictions;
+
 /// Reconfiguration planner for modular robots in which every transient state is proved stable
 #[derive(Debug, Parser)]
 #[command(
@@ -62,6 +64,9 @@ pub struct PlanningArguments {
     /// Write the plan/1 document to a file
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
+    /// Write the plan's margins over time: .csv as a table, .svg as a picture
+    #[arg(long, value_name = "FILE", value_parser = profile_file)]
+    pub profile: Option<PathBuf>,
     /// Plan by geometry alone, for comparison; `plan verify` tells where such a plan breaks
     #[arg(long)]
     pub ignore_stability: bool,
@@ -71,6 +76,8 @@ pub struct PlanningArguments {
     /// How to look for plans of lattice robots
     #[arg(long, value_enum, default_value_t = PlannerArgument::Auto)]
     pub planner: PlannerArgument,
+    #[command(flatten)]
+    pub restrictions: Restrictions,
 }
 
 /// `--planner`.
@@ -91,6 +98,17 @@ pub enum ObjectiveArgument {
     Margin,
     /// The fewest moves with at least the required margin
     Moves,
+    /// Every trade between margin and moves that no other plan beats
+    Pareto,
+}
+
+fn profile_file(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    let extension = path.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase);
+    match extension.as_deref() {
+        Some("csv" | "svg") => Ok(path),
+        _ => Err("a profile is written as .csv or .svg".to_string()),
+    }
 }
 
 fn margin(text: &str) -> Result<f64, String> {

@@ -5,7 +5,7 @@ use std::fmt::Display;
 use steadfast::io::{LatticeProblem, LinkageProblem, PlanDocument, Unwritable, write_linkage_plan, write_plan};
 use steadfast::reconfigure::linkage::assembly::{BodyOf, Held, Touched};
 use steadfast::reconfigure::linkage::{self, Half};
-use steadfast::reconfigure::replay::{Replay, replay};
+use steadfast::reconfigure::replay::{Replay, appraise, replay};
 use steadfast::reconfigure::{self, Action, Event, Options, Plan, Refusal, Report, solve};
 use steadfast::robot::linkage::{Linkage, MICRO, Port, Spot};
 use steadfast::robot::{Cell, Configuration, FaceConnection};
@@ -15,7 +15,7 @@ pub trait Family: Sync {
     /// What its modules do.
     type Action: Clone + Send;
     /// What names one of its connections.
-    type Connection: Clone + Send;
+    type Connection: Copy + PartialEq + Send;
     /// What its modules can hit.
     type Touched: Display;
 
@@ -34,6 +34,19 @@ pub trait Family: Sync {
         plan: &Plan<Self::Action, Self::Connection>,
         required: f64,
     ) -> Result<Replay<Self::Connection, Self::Touched>, Refusal>;
+
+    /// The plan with its margins over time and with what a stronger bottleneck would gain.
+    ///
+    /// # Errors
+    /// What cannot be replayed.
+    fn appraise(
+        &self,
+        plan: &Plan<Self::Action, Self::Connection>,
+        replay: &Replay<Self::Connection, Self::Touched>,
+    ) -> Result<Plan<Self::Action, Self::Connection>, Refusal>;
+
+    /// The id of a module of the start.
+    fn id(&self, module: usize) -> &str;
 
     /// A plan file.
     ///
@@ -71,6 +84,14 @@ impl Family for LatticeProblem {
 
     fn replay(&self, plan: &Plan, required: f64) -> Result<Replay, Refusal> {
         replay(&self.start, &self.goal, plan, required)
+    }
+
+    fn appraise(&self, plan: &Plan, replay: &Replay) -> Result<Plan, Refusal> {
+        appraise(&self.start, &self.goal, plan, replay)
+    }
+
+    fn id(&self, module: usize) -> &str {
+        &self.start.modules[module].id
     }
 
     fn write(&self, report: &Report) -> Result<String, Unwritable> {
@@ -113,6 +134,18 @@ impl Family for LinkageProblem {
 
     fn replay(&self, plan: &Plan<linkage::Action, Held>, required: f64) -> Result<Replay<Held, Touched>, Refusal> {
         linkage::replay::replay(&self.start, &self.goal, plan, required)
+    }
+
+    fn appraise(
+        &self,
+        plan: &Plan<linkage::Action, Held>,
+        replay: &Replay<Held, Touched>,
+    ) -> Result<Plan<linkage::Action, Held>, Refusal> {
+        linkage::replay::appraise(&self.start, &self.goal, plan, replay)
+    }
+
+    fn id(&self, module: usize) -> &str {
+        &self.start.modules[module].id
     }
 
     fn write(&self, report: &Answer<Self>) -> Result<String, Unwritable> {

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use steadfast::io::{Problem, read_problem};
+use steadfast::reconfigure::replay::Replay;
 use steadfast::reconfigure::{Method, Objective, Options, Outcome, Reduction, Refusal};
 
 use crate::arguments::{ObjectiveArgument, PlannerArgument, PlanningArguments};
@@ -13,7 +14,7 @@ use crate::exit::Exit;
 use crate::family::{Answer, Family};
 use crate::progress::ProgressLine;
 use crate::summary::summary;
-use crate::{files, memory, output};
+use crate::{files, memory, output, profile};
 
 /// Exit code of a program that a second Ctrl-C ended at once.
 const INTERRUPTED: i32 = 130;
@@ -31,7 +32,7 @@ pub fn run(arguments: &PlanningArguments) -> io::Result<Exit> {
 }
 
 fn plan<F: Family>(arguments: &PlanningArguments, problem: &F) -> io::Result<Exit> {
-    let report = match search(arguments, problem) {
+    let mut report = match search(arguments, problem) {
         Ok(Ok(report)) => report,
         Ok(Err(refusal)) => {
             let file = arguments.start.display().to_string();
@@ -44,9 +45,8 @@ fn plan<F: Family>(arguments: &PlanningArguments, problem: &F) -> io::Result<Exi
     };
     // Replayed by the code that shares no decision with the search.
     let required = report.required.unwrap_or(problem.required());
-    let check = report.plan.as_ref().map(|plan| problem.replay(plan, required)).transpose();
-    let check = match check {
-        Ok(check) => check,
+    let check = match appraise(problem, &mut report, required) {
+        Ok(checks) => checks,
         Err(refusal) => {
             output::message(&format!("error: {refusal}"))?;
             return Ok(Exit::Bug);
@@ -59,6 +59,16 @@ fn plan<F: Family>(arguments: &PlanningArguments, problem: &F) -> io::Result<Exi
             return Ok(Exit::Bug);
         }
     };
+    if let Some(path) = &arguments.profile
+        && let Some(plan) = &report.plan
+    {
+        let names: Vec<String> = plan.actions.iter().map(|planned| problem.action(&planned.action)).collect();
+        if let Err(trouble) = files::save(path, &profile::text(path, plan, &names)) {
+            output::message(&format!("error: {}: {trouble}", path.display()))?;
+            output::result(&document)?;
+            return Ok(Exit::BadInput);
+        }
+    }
     if let Some(out) = &arguments.out
         && let Err(trouble) = files::save(out, &document)
     {
@@ -82,10 +92,40 @@ fn plan<F: Family>(arguments: &PlanningArguments, problem: &F) -> io::Result<Exi
     })
 }
 
+/// Replays every plan, the best one first, and notes what the replays say of them. The failure of the plan
+/// that does worst is what is returned: the best one, unless another one does not verify.
+fn appraise<F: Family>(
+    problem: &F,
+    report: &mut Answer<F>,
+    required: f64,
+) -> Result<Option<Replay<F::Connection, F::Touched>>, Refusal> {
+    let mut first = None;
+    for plan in report.plan.iter_mut().chain(&mut report.alternatives) {
+        let replay = problem.replay(plan, required)?;
+        if plan.margin.is_some() {
+            *plan = problem.appraise(plan, &replay)?;
+        }
+        if first.as_ref().is_none_or(|first: &Replay<_, _>| first.is_verified() && !replay.is_verified()) {
+            first = Some(replay);
+        }
+    }
+    if let Some(found) = &mut report.in_the_way
+        && let Some(plan) = &mut found.plan
+    {
+        let replay = problem.replay(plan, f64::NEG_INFINITY)?;
+        *plan = problem.appraise(plan, &replay)?;
+        found.weigh(&replay, required);
+    }
+    Ok(first)
+}
+
 fn read(arguments: &PlanningArguments) -> io::Result<Result<Problem, Exit>> {
     let (start, goal) = (files::read(&arguments.start), files::read(&arguments.goal));
     match read_problem(&start, &goal, &files::resolve) {
-        Ok(problem) => Ok(Ok(problem)),
+        Ok(mut problem) => match arguments.restrictions.apply(&mut problem) {
+            Ok(()) => Ok(Ok(problem)),
+            Err(trouble) => output::refused(&start.name, [trouble], arguments.json).map(Err),
+        },
         Err(diagnostics) => output::bad_input(&diagnostics, arguments.json).map(Err),
     }
 }
@@ -96,6 +136,7 @@ fn search<F: Family>(arguments: &PlanningArguments, problem: &F) -> Result<Resul
         objective: match arguments.objective {
             ObjectiveArgument::Margin => Objective::Margin,
             ObjectiveArgument::Moves => Objective::Moves,
+            ObjectiveArgument::Pareto => Objective::Pareto,
         },
         min_margin: arguments.min_margin,
         plans: arguments.plans as usize,
@@ -103,6 +144,7 @@ fn search<F: Family>(arguments: &PlanningArguments, problem: &F) -> Result<Resul
         max_bytes: arguments.memory_limit.or_else(memory::half_of_the_machine),
         measure_bytes: Some(memory::in_use),
         cancel: Some(cancelled_by_interrupt()?),
+        explain: true,
         ignore_stability: arguments.ignore_stability,
         reduction: if arguments.primitive { Reduction::Primitive } else { Reduction::Saturated },
         method: match arguments.planner {

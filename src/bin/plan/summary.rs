@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use steadfast::reconfigure::replay::Replay;
-use steadfast::reconfigure::{Limit, Objective, Outcome, Plan, Report};
+use steadfast::reconfigure::{InTheWay, Limit, Objective, Outcome, Plan, Report};
 use steadfast::statics::Bracket;
 
 use crate::family::{Answer, Family};
@@ -21,13 +21,19 @@ pub fn summary<F: Family>(
         bottleneck(&mut text, problem, plan);
     }
     for (index, plan) in report.alternatives.iter().enumerate() {
-        let _ = writeln!(text, "\nalternative {}: {}", index + 1, worth(plan));
+        let _ = match report.objective {
+            Objective::Pareto => writeln!(text, "\nwith fewer moves: {}", worth(plan)),
+            Objective::Margin | Objective::Moves => writeln!(text, "\nalternative {}: {}", index + 1, worth(plan)),
+        };
         actions(&mut text, problem, plan);
     }
     if let Some(limit) = report.alternatives_cut_by.filter(|_| report.plan.is_some()) {
-        let _ = writeln!(text, "\nthere may be further plans as good: the search for them was {}", cut(limit));
+        let _ = writeln!(text, "\nthere may be further plans: the search for them was {}", cut(limit));
     }
     text.push('\n');
+    if let Some(found) = &report.in_the_way {
+        in_the_way(&mut text, problem, found, report.required.unwrap_or(f64::NEG_INFINITY));
+    }
     proved(&mut text, report);
     if let Some(replay) = replay {
         text.push_str(&verified(problem, report, replay));
@@ -106,7 +112,61 @@ fn bottleneck<F: Family>(text: &mut String, problem: &F, plan: &Plan<F::Action, 
     let connection = bottleneck.connection.as_ref();
     let held = connection.map_or_else(String::new, |pair| format!(", {}", problem.held(pair)));
     let _ = writeln!(text, "bottleneck: {place}{held}");
+    if let Some(gain) = plan.if_stronger {
+        let _ = writeln!(
+            text,
+            "{} times as strong, it would give the plan a margin of {:.4}",
+            gain.factor, gain.margin.lower
+        );
+    }
 }
+
+/// What would have to change for there to be a plan.
+fn in_the_way<F: Family>(text: &mut String, problem: &F, found: &InTheWay<F::Action, F::Connection>, required: f64) {
+    let Bracket { lower, upper } = found.margin;
+    let mut line = |sentence: String| {
+        let _ = writeln!(text, "  {sentence}");
+    };
+    if upper == f64::NEG_INFINITY {
+        line("whatever margin is required, and however strong the connections, nothing leads to the goal".to_string());
+    } else if lower == f64::NEG_INFINITY {
+        line("no plan was found with smaller margins either".to_string());
+    } else {
+        let at_most = if upper - lower <= 1e-4 { String::new() } else { format!(", and none above {upper:.4}") };
+        let moves = found.plan.as_ref().map_or(0, |plan| plan.moves);
+        line(format!("with a required margin of {lower:.4} there is a plan, of {moves} moves{at_most}"));
+        let factor = found.strength_factor;
+        if factor.upper.is_finite() {
+            let at_least = match factor.upper - factor.lower <= 1e-4 * factor.upper {
+                true => String::new(),
+                false => format!(", and with less than {:.4} times there is none", factor.lower),
+            };
+            line(format!(
+                "with everything {:.4} times as strong it would have the margin of {required}{at_least}",
+                factor.upper
+            ));
+        }
+    }
+    for (held, margin) in found.too_weak.iter().take(SHOWN) {
+        line(format!("too weak for it: {}, margin {:.4}", problem.held(held), margin.lower));
+    }
+    if found.too_weak.len() > SHOWN {
+        line(format!("and {} more", found.too_weak.len() - SHOWN));
+    }
+    match found.never_move.as_deref() {
+        None | Some([]) => {}
+        Some(modules) => {
+            let ids: Vec<&str> = modules.iter().map(|&module| problem.id(module)).collect();
+            line(format!("never moves with the required margin, whatever others do: {}", ids.join(", ")));
+        }
+    }
+    if let Some(limit) = found.cut_by {
+        line(format!("(this search was {})", cut(limit)));
+    }
+}
+
+/// How many connections that are too weak are shown.
+const SHOWN: usize = 5;
 
 fn proved<A, C>(text: &mut String, report: &Report<A, C>) {
     let proof = &report.proof;
@@ -118,6 +178,10 @@ fn proved<A, C>(text: &mut String, report: &Report<A, C>) {
             "proved: no plan has a larger margin, and none with this margin has fewer moves".to_string()
         }
         (Objective::Moves, true, true) => "proved: no plan with the required margin has fewer moves".to_string(),
+        (Objective::Pareto, true, true) => {
+            "proved: every other plan with the required margin has no more margin than one of these, and no fewer moves"
+                .to_string()
+        }
         (_, true, false) => "proved: no plan has fewer moves".to_string(),
         (_, false, stability) => {
             let mut known = Vec::new();

@@ -13,6 +13,7 @@ mod decode;
 mod environment;
 mod faults;
 mod goal;
+mod in_the_way;
 mod lattice;
 mod lattice_plan;
 mod lattice_type;

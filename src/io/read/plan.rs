@@ -7,11 +7,13 @@ use super::super::plan_document::PlanDocument;
 use super::super::wire;
 use super::decode::decode;
 use super::goal::read_problem;
+use super::in_the_way::in_the_way;
 use super::lattice_plan::LatticePlans;
 use super::linkage_plan::LinkagePlans;
 use super::outcome::{limit, outcome};
 use super::sequence::{Family, Parts, sequence};
 use crate::reconfigure::{Objective, Outcome, Proof, Report, Statistics};
+use crate::statics::Tally;
 
 /// Reads a plan for whatever robot it is.
 pub(super) fn read(root: &Place<'_>, findings: &mut Findings) -> Option<Verifiable> {
@@ -39,21 +41,29 @@ fn report<F: Family>(
     findings: &mut Findings,
 ) -> Option<Report<F::Action, F::Connection>> {
     let best = wire.actions.as_ref().map(|actions| {
-        let parts = Parts { margin: wire.margin, moves: wire.moves, bottleneck: wire.bottleneck.as_ref(), actions };
+        let parts = Parts {
+            margin: wire.margin,
+            moves: wire.moves,
+            bottleneck: wire.bottleneck.as_ref(),
+            actions,
+            profile: &wire.profile,
+            if_stronger: wire.if_stronger,
+        };
         sequence(family, 0, parts, root, findings)
     });
     let mut alternatives = Vec::with_capacity(wire.alternatives.len());
     for (index, other) in wire.alternatives.iter().enumerate() {
-        let wire::Alternative { margin, moves, bottleneck, actions } = other;
-        let parts = Parts { margin: *margin, moves: Some(*moves), bottleneck: bottleneck.as_ref(), actions };
         let place = root.key("alternatives").index(index);
-        alternatives.push(sequence(family, index + 1, parts, &place, findings));
+        alternatives.push(sequence(family, index + 1, Parts::of(other), &place, findings));
     }
     if wire.actions.is_none() && !wire.alternatives.is_empty() {
         let message = "there are alternatives to a plan, but no `actions`";
         let hint = "the best plan stands in `actions`, the further ones in `alternatives`";
         findings.add(&root.key("alternatives"), codes::PLAN, message, hint.to_string());
     }
+    let ids: Vec<&str> = wire.start.modules.iter().map(|module| module.id.as_str()).collect();
+    let place = root.key("in_the_way");
+    let way = wire.in_the_way.as_ref().map(|wire| in_the_way(wire, family, &ids, &place, findings));
     let outcome = outcome(wire, family, root, findings);
     let statistics = statistics(&wire.statistics, &root.key("statistics"), findings);
     let plan = match best {
@@ -67,11 +77,16 @@ fn report<F: Family>(
         objective: match wire.objective {
             wire::Objective::Margin => Objective::Margin,
             wire::Objective::Moves => Objective::Moves,
+            wire::Objective::Pareto => Objective::Pareto,
         },
         required: wire.required_margin.map(|margin| margin.0),
         plan,
         alternatives: alternatives.into_iter().collect::<Option<_>>()?,
         alternatives_cut_by: wire.alternatives_cut_by.map(limit),
+        in_the_way: match way {
+            Some(way) => Some(way?),
+            None => None,
+        },
         statistics,
     })
 }
@@ -97,6 +112,7 @@ pub(super) fn statistics(wire: &wire::Statistics, place: &Place<'_>, findings: &
         generated: wire.generated.unwrap_or_else(|| certified.saturating_add(wire.decided_by_bounds)),
         certified,
         oracle_solves: wire.oracle_solves,
+        decided_by: Tally::default(),
         bytes: wire.memory_bytes.unwrap_or_default(),
         seconds: wire.seconds.0,
     };

@@ -3,7 +3,7 @@
 use super::super::codes;
 use super::super::findings::{Findings, Place};
 use super::super::wire;
-use crate::reconfigure::{Bottleneck, Plan, PlannedAction, Which};
+use crate::reconfigure::{Bottleneck, IfStronger, Moment, Plan, PlannedAction, Which};
 use crate::statics::Bracket;
 
 /// What reading a plan has to know of a family of robots.
@@ -70,6 +70,17 @@ pub(super) struct Parts<'w> {
     pub(super) moves: Option<u32>,
     pub(super) bottleneck: Option<&'w wire::Bottleneck>,
     pub(super) actions: &'w [wire::Action],
+    pub(super) profile: &'w [wire::Moment],
+    pub(super) if_stronger: Option<wire::IfStronger>,
+}
+
+impl<'w> Parts<'w> {
+    /// Those of a plan that is not the best.
+    pub(super) fn of(wire: &'w wire::Alternative) -> Self {
+        let wire::Alternative { margin, moves, bottleneck, actions, profile, if_stronger } = wire;
+        let (moves, bottleneck, if_stronger) = (Some(*moves), bottleneck.as_ref(), *if_stronger);
+        Self { margin: *margin, moves, bottleneck, actions, profile, if_stronger }
+    }
 }
 
 /// The plan at `place`, which is number `plan` of its file. What it claims is
@@ -100,7 +111,20 @@ pub(super) fn sequence<F: Family>(
         Bottleneck { action: wire.action.map(|action| action as usize), phase: wire.phase.0, connection }
     });
     let actions = actions.into_iter().collect::<Option<Vec<_>>>()?;
-    Some(Plan { margin: parts.margin.map(bracket), moves: parts.moves.unwrap_or_default(), bottleneck, actions })
+    let moment = |wire: &wire::Moment| Moment {
+        action: wire.action.map(|action| action as usize),
+        phase: wire.phase.0,
+        margin: bracket(wire.margin),
+    };
+    let gain = |wire: wire::IfStronger| IfStronger { factor: wire.factor.0, margin: bracket(wire.margin) };
+    Some(Plan {
+        margin: parts.margin.map(bracket),
+        moves: parts.moves.unwrap_or_default(),
+        bottleneck,
+        actions,
+        profile: parts.profile.iter().map(moment).collect(),
+        if_stronger: parts.if_stronger.map(gain),
+    })
 }
 
 /// An end where nothing was proved is infinite.

@@ -28,9 +28,9 @@ pub(super) fn read(place: &Place<'_>, findings: &mut Findings) -> Option<Suite> 
     })
 }
 
-/// A time in s; a century at most, which is as good as no limit.
+/// A time in s; a century at most, which is as good as no limit. One that is below 0 has been found wrong already.
 fn seconds(seconds: f64) -> Duration {
-    Duration::from_secs_f64(seconds.min(3.2e9))
+    Duration::from_secs_f64(seconds.clamp(0.0, 3.2e9))
 }
 
 fn bytes(megabytes: u32) -> u64 {
@@ -129,6 +129,7 @@ fn objective(wire: wire::Objective) -> Objective {
     match wire {
         wire::Objective::Margin => Objective::Margin,
         wire::Objective::Moves => Objective::Moves,
+        wire::Objective::Pareto => Objective::Pareto,
     }
 }
 

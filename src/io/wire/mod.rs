@@ -11,6 +11,7 @@ mod configuration;
 mod connector;
 mod errors;
 mod gives_way;
+mod in_the_way;
 mod load_range;
 mod motion;
 mod number;
@@ -39,12 +40,15 @@ pub(super) use configuration::{
 pub(super) use connector::Connector;
 pub(super) use errors::{Errors, ErrorsFormat, FileError};
 pub(super) use gives_way::{ContactMotion, GivesWay, MovingContact};
+pub(super) use in_the_way::{InTheWay, TooWeak};
 pub(super) use load_range::{Failure, LoadRange, LoadRangeFormat, RangeEnd, RangeOutcome};
 pub(super) use motion::{Edge, Stencil};
 pub(super) use number::{AngleRange, Bound, Limit, NonNegative, Positive, Real, reals};
 pub(super) use outcome::{Impossible, Outcome, StoppedBy, Which};
 pub(super) use partial_order::{CheckedMoments, OrderedAction, PartialOrder, PartialOrderFormat, Wait};
-pub(super) use plan::{Alternative, Bottleneck, Bracket, Objective, Plan, PlanFormat, Proof, Statistics};
+pub(super) use plan::{
+    Alternative, Bottleneck, Bracket, IfStronger, Moment, Objective, Plan, PlanFormat, Proof, Statistics,
+};
 pub(super) use result::{Asked, FoundPlan, JobEnding, JobResult, PlanFlaw, ReplayOf, ResultFormat, TracePoint};
 pub(super) use rofi::{
     ComponentOf, CoordinateAxis, Direction, DockOf, IdentityTransform, ModuleJoint, NameOrNumber, PlacingJoint,

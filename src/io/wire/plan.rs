@@ -5,7 +5,8 @@ use serde::{Deserialize, Serialize};
 
 use super::action::{Action, JointOf};
 use super::configuration::Configuration;
-use super::number::{Bound, NonNegative, Real};
+use super::in_the_way::InTheWay;
+use super::number::{Bound, NonNegative, Positive, Real};
 use super::outcome::{Impossible, Outcome, StoppedBy};
 
 /// Name and version of the format.
@@ -55,6 +56,15 @@ pub(crate) struct Plan {
     /// The best plan; null without one.
     #[serde(default)]
     pub(crate) actions: Option<Vec<Action>>,
+    /// Margins of the best plan over time; empty when not recorded.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(crate) profile: Vec<Moment>,
+    /// What the best plan would be worth if the connection at its bottleneck were stronger.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) if_stronger: Option<IfStronger>,
+    /// What is in the way of a plan, where none was found and that was looked into.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) in_the_way: Option<InTheWay>,
     /// The further ranked plans.
     #[serde(default)]
     pub(crate) alternatives: Vec<Alternative>,
@@ -74,6 +84,8 @@ pub(crate) enum Objective {
     Margin,
     /// The fewest moves with at least the required margin.
     Moves,
+    /// Every trade between the two that no other plan beats; first the one of the largest margin.
+    Pareto,
 }
 
 /// An interval that is proved to hold a value; null where nothing was proved.
@@ -132,6 +144,36 @@ pub(crate) struct Alternative {
     pub(crate) bottleneck: Option<Bottleneck>,
     /// Its actions.
     pub(crate) actions: Vec<Action>,
+    /// Its margins over time; empty when not recorded.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(crate) profile: Vec<Moment>,
+    /// What it would be worth if the connection at its bottleneck were stronger.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) if_stronger: Option<IfStronger>,
+}
+
+/// A state that a plan passes.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Moment {
+    /// Index of the action, from 0; null for the start itself.
+    #[serde(default)]
+    pub(crate) action: Option<u32>,
+    /// How far the action is done, 0 to 1.
+    #[schemars(range(min = 0, max = 1))]
+    pub(crate) phase: Real,
+    /// The margin then.
+    pub(crate) margin: Bracket,
+}
+
+/// What a plan would be worth with a stronger bottleneck.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct IfStronger {
+    /// How many times as strong the connection at the bottleneck would be, wherever the same ports hold each other.
+    pub(crate) factor: Positive,
+    /// Smallest margin of the same plan's states then.
+    pub(crate) margin: Bracket,
 }
 
 /// What a search did.

@@ -7,6 +7,7 @@ mod configuration;
 mod connector;
 mod errors;
 mod gives_way;
+mod in_the_way;
 mod lattice_plan;
 mod linkage;
 mod linkage_plan;

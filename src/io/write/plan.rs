@@ -2,6 +2,7 @@
 
 use super::super::plan_document::{LinkagePlanDocument, PlanDocument};
 use super::super::wire::{self, NonNegative, Real};
+use super::in_the_way::in_the_way;
 use super::lattice_plan::LatticePlans;
 use super::linkage_plan::LinkagePlans;
 use super::sequence::{Family, sequence};
@@ -28,10 +29,14 @@ fn written<F: Family>(
     [start, goal]: [wire::Configuration; 2],
 ) -> Result<wire::Plan, Unwritable> {
     let best = report.plan.as_ref().map(|plan| sequence(family, 0, plan)).transpose()?;
-    let (margin, moves, bottleneck, actions) = match best {
-        Some(best) => (best.margin, Some(best.moves), best.bottleneck, Some(best.actions)),
-        None => (None, None, None, None),
+    let (margin, moves, bottleneck, actions, profile, if_stronger) = match best {
+        Some(best) => {
+            (best.margin, Some(best.moves), best.bottleneck, Some(best.actions), best.profile, best.if_stronger)
+        }
+        None => (None, None, None, None, Vec::new(), None),
     };
+    let ids: Vec<String> = start.modules.iter().map(|module| module.id.clone()).collect();
+    let in_the_way = report.in_the_way.as_ref().map(|found| in_the_way(found, family, &ids)).transpose()?;
     let offset = usize::from(report.plan.is_some());
     let alternatives = report.alternatives.iter().enumerate();
     let alternatives = alternatives.map(|(index, plan)| sequence(family, offset + index, plan));
@@ -55,6 +60,7 @@ fn written<F: Family>(
         objective: match report.objective {
             Objective::Margin => wire::Objective::Margin,
             Objective::Moves => wire::Objective::Moves,
+            Objective::Pareto => wire::Objective::Pareto,
         },
         required_margin: report.required.map(Real),
         margin,
@@ -62,6 +68,9 @@ fn written<F: Family>(
         proof: proof(&report.proof),
         bottleneck,
         actions,
+        profile,
+        if_stronger,
+        in_the_way,
         alternatives,
         start,
         goal,

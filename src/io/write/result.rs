@@ -82,6 +82,7 @@ fn asked(job: &Job) -> wire::Asked {
         objective: match job.objective {
             Objective::Margin => wire::Objective::Margin,
             Objective::Moves => wire::Objective::Moves,
+            Objective::Pareto => wire::Objective::Pareto,
         },
         planner: match job.planner {
             Planner::Exact => wire::PlannerName::Exact,

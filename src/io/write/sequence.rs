@@ -2,7 +2,7 @@
 
 use super::super::wire::{self, Real};
 use super::{Unwritable, bracket};
-use crate::reconfigure::{Bottleneck, Plan, PlannedAction, Which};
+use crate::reconfigure::{Bottleneck, Moment, Plan, PlannedAction, Which};
 
 /// What is written of an action besides itself: its margin, and the phase where that is.
 pub(super) type Worth = (Option<wire::Bracket>, Option<Real>);
@@ -43,7 +43,19 @@ pub(super) fn sequence<F: Family>(
         margin: plan.margin.map(bracket),
         moves: plan.moves,
         bottleneck: plan.bottleneck.as_ref().map(|found| bottleneck(family, found)).transpose()?,
+        profile: plan.profile.iter().map(moment).collect(),
+        if_stronger: plan
+            .if_stronger
+            .map(|gain| wire::IfStronger { factor: wire::Positive(gain.factor), margin: bracket(gain.margin) }),
     })
+}
+
+fn moment(moment: &Moment) -> wire::Moment {
+    wire::Moment {
+        action: moment.action.map(|action| u32::try_from(action).unwrap_or(u32::MAX)),
+        phase: Real(moment.phase),
+        margin: bracket(moment.margin),
+    }
 }
 
 fn bottleneck<F: Family>(family: &F, bottleneck: &Bottleneck<F::Connection>) -> Result<wire::Bottleneck, Unwritable> {

@@ -36,7 +36,7 @@ struct Run<'a> {
 
 impl<'a> Run<'a> {
     fn new(domain: &'a Domain<'a>) -> Self {
-        let plan = Plan { margin: None, moves: 0, bottleneck: None, actions: Vec::new() };
+        let plan = Plan::EMPTY;
         let state = State::new(domain.problem.start.clone());
         let slots = (0..domain.problem.start.modules.len()).collect();
         let mut run = Self { domain, state, slots, plan };

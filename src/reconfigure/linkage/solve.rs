@@ -12,10 +12,11 @@ use crate::reconfigure::worst::Worst;
 use crate::robot::linkage::{Goal, Linkage};
 
 use super::action::Action;
-use super::arrangement::Arrangement;
+use super::arrangement::{Arrangement, Frame};
 use super::assembly::Held;
 use super::compose::compose;
 use super::domain::{Domain, width};
+use super::places::PlaceId;
 use super::problem::Problem;
 use super::saturated::{self, Saturated};
 
@@ -57,12 +58,25 @@ pub fn solve(
             task.run_with(&space, &Plans(&domain), &|search, floor| search.from_both_ends(floor), on_event)
         }
     };
+    let space = Saturated::new(&domain, ends.width(), ends.at_most());
+    report.in_the_way = task.in_the_way(&space, &Plans(&domain), &report, &|reached| unmoved(&domain, reached));
     if let Some(fault) = domain.oracle.fault() {
         return Err(Refusal::Structure(fault));
     }
     report.statistics.oracle_solves = domain.oracle.solves();
     report.statistics.seconds = began.elapsed().as_secs_f64();
     Ok(report)
+}
+
+/// The modules of the start, not fixed, whose places are taken by the like of them in all of these states; `None` where
+/// places do not tell, since robots are the same anywhere.
+fn unmoved(domain: &Domain, states: &[&saturated::State]) -> Option<Vec<usize>> {
+    let problem = domain.problem;
+    let places = domain.arrangements.of(&problem.described(&problem.start)).of_module;
+    let stays = |place: &PlaceId| states.iter().all(|state| state.arrangement.0.contains(place));
+    let unmoved =
+        places.iter().enumerate().filter(|(module, place)| !problem.start.modules[*module].fixed && stays(place));
+    (problem.frame == Frame::World).then(|| unmoved.map(|(module, _)| module).collect())
 }
 
 /// The two ends of every plan.

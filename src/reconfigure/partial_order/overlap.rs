@@ -81,7 +81,7 @@ pub fn engaged(state: &Configuration, paths: &[Path]) -> Result<Vec<Engagement>,
     let mut engaged: Vec<Engagement> = resting.map(|connection| Engagement::face(state, connection)).collect();
     for path in paths {
         for held in path.engaged.iter().filter(|held| held.modules().contains(&path.module)) {
-            if held.modules().iter().all(|module| is_moving(module)) {
+            if held.modules().iter().all(is_moving) {
                 return Err(Because::HoldsTheOther);
             }
             engaged.push(*held);

@@ -9,7 +9,7 @@ use crate::reconfigure::{Action, Objective, Options, Plan};
 use crate::robot::{Configuration, Goal, Placement};
 use crate::statics::{Question, assess};
 
-use super::{OrderError, OrderOptions, PartialOrder, partial_order};
+use super::{Because, OrderError, OrderOptions, PartialOrder, partial_order};
 
 /// A row on the ground, the first cube held, with a cube on either end that moves one cell inwards.
 fn two_apart() -> (Configuration, Goal) {
@@ -124,6 +124,28 @@ fn a_margin_that_only_one_at_a_time_leaves_is_kept() {
     assert!(order.margin.lower >= required - 1e-6);
     let asked = OrderOptions { required: required + 0.01, ..OrderOptions::default() };
     assert!(matches!(partial_order(&problem.0, &plan, &asked), Err(OrderError::Broken { .. })));
+}
+
+#[test]
+fn a_move_waits_where_only_the_margin_asks_for_it() {
+    // On a cantilever one cube moves in from the tip and one moves out from the wall: in the other order, or at
+    // once, the bending at the wall would be more than at any time of the plan.
+    let arm: Vec<[i32; 3]> = (0..4).map(|x| [x, 0, 5]).collect();
+    let with = |tops: [i32; 2]| {
+        let mut robot = cubes(&[arm.clone(), tops.map(|x| [x, 0, 6]).to_vec()].concat(), 1);
+        robot.gravity.z = -2.0;
+        robot
+    };
+    let (start, goal) = (with([3, 0]), goal(with([2, 1])));
+    let plan = solved(&plan(&start, &goal, &Options::default())).clone();
+    let [inwards, outwards] = moves(&plan)[..] else { panic!("two moves") };
+    let required = plan.margin.unwrap().lower;
+    assert!(required > 0.05);
+    let strict = partial_order(&start, &plan, &OrderOptions { required, ..OrderOptions::default() }).unwrap();
+    assert!(waits(&strict, outwards, inwards));
+    assert!(strict.graph.edge_weights().any(|because| *because == Because::Unstable));
+    let lenient = ordered(&start, &plan);
+    assert!(!waits(&lenient, outwards, inwards) && lenient.margin.lower < required);
 }
 
 #[test]

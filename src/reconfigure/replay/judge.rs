@@ -1,7 +1,9 @@
 //! States that were assessed, and the judgement on them: what every replay keeps books on.
 
+use crate::reconfigure::plan::Moment;
 use crate::statics::Bracket;
 
+use super::State;
 use super::claims;
 use super::failure::{Failure, Fault};
 
@@ -49,6 +51,18 @@ impl<C> Found<C> {
     pub fn at(&self, phase: f64) -> impl Iterator<Item = &Sample<C>> {
         self.samples.iter().filter(move |sample| sample.phase == phase)
     }
+}
+
+/// All samples of the start and of every action, in their order.
+pub(in crate::reconfigure) fn states<C: Copy>(found: &[Found<C>]) -> Vec<State<C>> {
+    let of_action = |(place, found): (usize, &Found<C>)| -> Vec<State<C>> {
+        let state = |sample: &Sample<C>| State {
+            moment: Moment { action: place.checked_sub(1), phase: sample.phase, margin: sample.margin },
+            weakest: sample.weakest,
+        };
+        found.samples.iter().map(state).collect()
+    };
+    found.iter().enumerate().flat_map(of_action).collect()
 }
 
 /// Collects what is wrong.

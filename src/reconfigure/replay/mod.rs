@@ -19,7 +19,7 @@ use crate::statics::Bracket;
 
 use super::action::Action;
 use super::assembly::{Assembler, Touched};
-use super::plan::Plan;
+use super::plan::{IfStronger, Moment, Plan, PlannedAction};
 use super::refusal::{Refusal, check};
 pub use failure::{Failure, Fault};
 use judge::Found;
@@ -34,10 +34,21 @@ pub struct Replay<C = FaceConnection, T = Touched> {
     pub failures: Vec<Failure<C, T>>,
     /// Smallest margin over all states that were reached.
     pub margin: Bracket,
+    /// All states that were assessed, in the order of the plan.
+    pub states: Vec<State<C>>,
     /// Actions that could be carried out.
     pub actions_replayed: usize,
     /// Structures that the oracle assessed.
     pub oracle_solves: u64,
+}
+
+/// A state that was assessed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct State<C = FaceConnection> {
+    /// When, and its margin.
+    pub moment: Moment,
+    /// The connection that is weakest then, if any holds at all.
+    pub weakest: Option<C>,
 }
 
 impl<C, T> Replay<C, T> {
@@ -59,9 +70,45 @@ impl<C, T> Replay<C, T> {
 /// # Errors
 /// [`Refusal`] when start and goal themselves are unsound.
 pub fn replay(start: &Configuration, goal: &Goal, plan: &Plan, required: f64) -> Result<Replay, Refusal> {
+    run(start, goal, plan, required, None)
+}
+
+/// The plan with its margins over time, from a replay of it, and with what it would be worth if its bottleneck were
+/// twice as strong, from another one.
+///
+/// # Errors
+/// [`Refusal`] when start and goal themselves are unsound.
+pub fn appraise(start: &Configuration, goal: &Goal, plan: &Plan, replay: &Replay) -> Result<Plan, Refusal> {
+    // Of a plan that claims bounds only, nothing says how much of the margin is its bottleneck's.
+    let is_value = |planned: &PlannedAction| {
+        planned.margin.is_none_or(|claim| claims::bound(&claim, planned.action.is_move()).is_none())
+    };
+    let bottleneck = plan.bottleneck.as_ref().filter(|_| plan.actions.iter().all(is_value));
+    let weakest = bottleneck.and_then(|bottleneck| bottleneck.connection);
+    let again = weakest.map(|held| run(start, goal, plan, f64::NEG_INFINITY, Some((held, TWICE)))).transpose()?;
+    let if_stronger = again.map(|again| IfStronger { factor: TWICE, margin: again.margin });
+    Ok(Plan { profile: profile(replay), if_stronger, ..plan.clone() })
+}
+
+/// How much stronger a bottleneck is taken to be.
+pub(super) const TWICE: f64 = 2.0;
+
+/// The margins of a replay over time.
+pub(super) fn profile<C, T>(replay: &Replay<C, T>) -> Vec<Moment> {
+    replay.states.iter().map(|state| state.moment).collect()
+}
+
+/// Replays a plan, one connection being so many times as strong as it is.
+fn run(
+    start: &Configuration,
+    goal: &Goal,
+    plan: &Plan,
+    required: f64,
+    stronger: Option<(FaceConnection, f64)>,
+) -> Result<Replay, Refusal> {
     check(start, goal)?;
     let assembler = Assembler::new(start);
-    let mut checker = Checker::new(start, &assembler, required);
+    let mut checker = Checker::new(start, &assembler, required, stronger);
     let mut state = start.clone();
     state.connections.sort_unstable();
 
@@ -70,7 +117,8 @@ pub fn replay(start: &Configuration, goal: &Goal, plan: &Plan, required: f64) ->
     let mut legal = true;
     let movers = neighbouring_movers(plan);
     for (index, planned) in plan.actions.iter().enumerate() {
-        let bound = planned.margin.and_then(|claim| claims::bound(&claim, planned.action.is_move()));
+        let claim = planned.margin.filter(|_| stronger.is_none());
+        let bound = claim.and_then(|claim| claims::bound(&claim, planned.action.is_move()));
         match transition(&state, &planned.action) {
             Err(fault) => {
                 checker.judge.fail(Some(index), None, fault, None);
@@ -93,8 +141,9 @@ pub fn replay(start: &Configuration, goal: &Goal, plan: &Plan, required: f64) ->
         checker.judge.fail(None, None, fault, None);
     }
     let margin = found.iter().map(|f| f.margin).reduce(Bracket::min).expect("the start was checked");
+    let states = judge::states(&found);
     let oracle_solves = checker.judge.solves + checker.bounds.solves();
-    Ok(Replay { margin, actions_replayed, oracle_solves, failures: checker.judge.failures })
+    Ok(Replay { margin, states, actions_replayed, oracle_solves, failures: checker.judge.failures })
 }
 
 /// What a plan says about an action that tells where and how tightly to look. Wrong hints cost time only.

@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use crate::geometry::{Solid, Surrounding, Surroundings, first_collision};
 use crate::reconfigure::assembly::{Assembler, Engagement, Moving, Touched, Transient};
 use crate::reconfigure::refusal::Refusal;
+use crate::reconfigure::stronger::strengthen;
 use crate::robot::{Configuration, FaceConnection, Placement, Port};
 use crate::statics::{Question, assess};
 
@@ -21,15 +22,22 @@ pub(super) struct Checker<'a> {
     surroundings: Surroundings,
     off_limits: Surroundings,
     pub bounds: Bounds<'a>,
+    /// A connection that is taken to be so many times as strong as it is.
+    stronger: Option<(FaceConnection, f64)>,
     pub judge: Judge<FaceConnection, Touched>,
 }
 
 impl<'a> Checker<'a> {
-    pub fn new(start: &'a Configuration, assembler: &'a Assembler<'a>, required: f64) -> Self {
+    pub fn new(
+        start: &'a Configuration,
+        assembler: &'a Assembler<'a>,
+        required: f64,
+        stronger: Option<(FaceConnection, f64)>,
+    ) -> Self {
         let surroundings = Surroundings::new(&start.environment);
         let off_limits = Surroundings::new(&start.require.off_limits());
         let judge = Judge::new(required, start.require.connected);
-        Self { assembler, surroundings, off_limits, bounds: Bounds::new(start), judge }
+        Self { assembler, surroundings, off_limits, bounds: Bounds::new(start), stronger, judge }
     }
 
     /// Checks a state at rest: whether it has a margin, by bounds with one of two modules hanging on the others, where
@@ -102,7 +110,11 @@ impl<'a> Checker<'a> {
         state: &Transient,
         phase: f64,
     ) -> Result<Sample<FaceConnection>, Refusal> {
-        let assembly = self.assembler.assemble(state);
+        let mut assembly = self.assembler.assemble(state);
+        if let Some((held, factor)) = self.stronger {
+            let is_it = |index: usize| ports(modules, &state.engaged[assembly.connections[index]]) == held;
+            strengthen(&mut assembly.structure, factor, is_it);
+        }
         let assessment = assess(&assembly.structure, Question::VALUE).map_err(Refusal::Structure)?;
         let connection = |i: usize| ports(modules, &state.engaged[assembly.connections[i]]);
         let limit = assessment.utilisation.lower * (1.0 - claims::AT_LIMIT);

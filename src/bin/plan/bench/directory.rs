@@ -1,6 +1,6 @@
 //! The folder of a run: its results, its plans, and on what it was run.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Read, Seek, SeekFrom, Write};
@@ -60,7 +60,7 @@ impl Directory {
         let length = bytes.len();
         let file = SourceFile::new(name.display().to_string(), bytes);
         let Results { records, whole_bytes } = read_results(&file).map_err(Trouble::Results)?;
-        let known: Vec<String> = jobs.iter().map(Job::name).collect();
+        let known: BTreeSet<String> = jobs.iter().map(Job::name).collect();
         if let Some(line) = records.iter().position(|record| !known.contains(&record.job)) {
             let message = format!("line {}: the suite has no job {}; use another folder", line + 1, records[line].job);
             return Err(fails(&name, &message));

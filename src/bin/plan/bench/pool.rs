@@ -20,7 +20,10 @@ use crate::{output, search};
 /// How often the clock and the interrupt are looked at.
 const TICK: Duration = Duration::from_millis(50);
 
-/// What a job may take to draw its problem, and to end after its time is over.
+/// What a job may take to draw its problem.
+const DRAWING: Duration = Duration::from_secs(600);
+
+/// What a job may take to end after its time is over, beside half of that time.
 const GRACE: Duration = Duration::from_secs(30);
 
 /// Those who run jobs.
@@ -195,7 +198,8 @@ fn listen(child: &mut Child, out: ChildStdout, time: Duration, cancel: &AtomicBo
             },
             Err(RecvTimeoutError::Disconnected) => break,
             Err(RecvTimeoutError::Timeout) => {
-                heard.overran = began.elapsed() > time + time / 2 + GRACE && heard.record.is_none();
+                let most = if heard.trace.is_empty() { DRAWING } else { time + time / 2 + GRACE };
+                heard.overran = began.elapsed() > most && heard.record.is_none();
                 if heard.overran || cancel.load(Ordering::SeqCst) {
                     let _ = child.kill();
                     break;

@@ -9,10 +9,10 @@ mod arrival;
 mod legality;
 mod transit;
 
-use crate::reconfigure::plan::Plan;
+use crate::reconfigure::plan::{IfStronger, Plan};
 use crate::reconfigure::refusal::Refusal;
-use crate::reconfigure::replay::judge::{Found, Judge, Sample, phases};
-use crate::reconfigure::replay::{Replay, claims};
+use crate::reconfigure::replay::judge::{Found, Judge, Sample, phases, states};
+use crate::reconfigure::replay::{Replay, TWICE, claims, profile};
 use crate::robot::linkage::{Goal, Linkage};
 use crate::statics::Bracket;
 
@@ -39,8 +39,36 @@ pub fn replay(
     plan: &Plan<Action, Held>,
     required: f64,
 ) -> Result<Replay<Held, Touched>, Refusal> {
+    run(start, goal, plan, required, None)
+}
+
+/// The plan with its margins over time and with what a stronger bottleneck would gain, like
+/// [`appraise`](crate::reconfigure::replay::appraise) does for lattices.
+///
+/// # Errors
+/// [`Refusal::Structure`] when the oracle refuses a structure.
+pub fn appraise(
+    start: &Linkage,
+    goal: &Goal,
+    plan: &Plan<Action, Held>,
+    replay: &Replay<Held, Touched>,
+) -> Result<Plan<Action, Held>, Refusal> {
+    let weakest = plan.bottleneck.as_ref().and_then(|bottleneck| bottleneck.connection);
+    let again = weakest.map(|held| run(start, goal, plan, f64::NEG_INFINITY, Some((held, TWICE)))).transpose()?;
+    let if_stronger = again.map(|again| IfStronger { factor: TWICE, margin: again.margin });
+    Ok(Plan { profile: profile(replay), if_stronger, ..plan.clone() })
+}
+
+/// Replays a plan, one connection or joint being so many times as strong as it is.
+fn run(
+    start: &Linkage,
+    goal: &Goal,
+    plan: &Plan<Action, Held>,
+    required: f64,
+    stronger: Option<(Held, f64)>,
+) -> Result<Replay<Held, Touched>, Refusal> {
     let assembler = Assembler::new(start);
-    let mut checker = Checker::new(start, &assembler, required);
+    let mut checker = Checker::new(start, &assembler, required, stronger);
     let mut state = start.clone();
     state.connections.sort_unstable();
 
@@ -69,7 +97,8 @@ pub fn replay(
     }
     let margin = found.iter().map(|f| f.margin).reduce(Bracket::min).expect("the start was checked");
     let Judge { failures, solves, .. } = checker.judge;
-    Ok(Replay { margin, actions_replayed, oracle_solves: solves, failures })
+    let states = states(&found);
+    Ok(Replay { margin, states, actions_replayed, oracle_solves: solves, failures })
 }
 
 /// The state after actions, each of which must be legal in the state that it is taken in; forces and collisions play no

@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use crate::geometry::{Solid, Surrounding, Surroundings, first_collision};
+use crate::reconfigure::stronger::strengthen;
 use crate::robot::linkage::{Connection, Linkage};
 use crate::spatial::Pose;
 use crate::statics::{Question, assess};
@@ -17,14 +18,17 @@ pub(super) struct Checker<'a> {
     assembler: &'a Assembler<'a>,
     surroundings: Surroundings,
     off_limits: Surroundings,
+    /// What is taken to be so many times as strong as it is.
+    stronger: Option<(Held, f64)>,
     pub judge: Judge<Held, Touched>,
 }
 
 impl<'a> Checker<'a> {
-    pub fn new(start: &Linkage, assembler: &'a Assembler<'a>, required: f64) -> Self {
+    pub fn new(start: &Linkage, assembler: &'a Assembler<'a>, required: f64, stronger: Option<(Held, f64)>) -> Self {
         let surroundings = Surroundings::new(&start.environment);
         let off_limits = Surroundings::new(&start.require.off_limits());
-        Self { assembler, surroundings, off_limits, judge: Judge::new(required, start.require.connected) }
+        let judge = Judge::new(required, start.require.connected);
+        Self { assembler, surroundings, off_limits, stronger, judge }
     }
 
     /// Checks a state at rest.
@@ -55,8 +59,11 @@ impl<'a> Checker<'a> {
     }
 
     fn sample(&self, linkage: &Linkage, bodies: &[Vec<Pose>], phase: f64) -> Result<Sample<Held>, Refusal> {
-        let Assembly { structure, connections, .. } =
+        let Assembly { mut structure, connections, .. } =
             self.assembler.assemble(&Transient { bodies, engaged: &linkage.connections });
+        if let Some((held, factor)) = self.stronger {
+            strengthen(&mut structure, factor, |index| connections[index] == held);
+        }
         let assessment = assess(&structure, Question::VALUE).map_err(Refusal::Structure)?;
         let limit = assessment.utilisation.lower * (1.0 - claims::AT_LIMIT);
         let limiting = assessment.connections.iter().zip(&connections);

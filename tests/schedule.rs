@@ -4,10 +4,13 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use crate::reconfigure::{Limit, Objective, Options, Outcome};
-use crate::robot::{Configuration, FaceConnection};
+use steadfast::reconfigure::{Limit, Objective, Options, Outcome};
+use steadfast::robot::{Configuration, FaceConnection};
 
-use super::*;
+use steadfast::robot::linkage::Linkage;
+use steadfast::schedule::{
+    ChangeError, Job, PlanOf, Problem, Robot, best, plan_batch, until, weaken_connector, weaken_port, without,
+};
 
 fn cubes(name: &str) -> Problem<Configuration> {
     let read = problems_named("cubes", name).into_lattice().unwrap();
@@ -15,16 +18,16 @@ fn cubes(name: &str) -> Problem<Configuration> {
 }
 
 fn linkage(name: &str) -> Problem<Linkage> {
-    let crate::io::Problem::Linkage(read) = problems_named("freesn", name) else { panic!("a linkage") };
+    let steadfast::io::Problem::Linkage(read) = problems_named("freesn", name) else { panic!("a linkage") };
     Problem::linkage(read.start, read.goal)
 }
 
-fn problems_named(family: &str, name: &str) -> crate::io::Problem {
+fn problems_named(family: &str, name: &str) -> steadfast::io::Problem {
     let file = |end: &str| {
         let path = problems::root().join(family).join(name).join(end);
-        crate::io::SourceFile::new(end, std::fs::read(path).unwrap())
+        steadfast::io::SourceFile::new(end, std::fs::read(path).unwrap())
     };
-    crate::io::read_problem(&file("start.json"), &file("goal.json"), &crate::io::no_references).unwrap()
+    steadfast::io::read_problem(&file("start.json"), &file("goal.json"), &steadfast::io::no_references).unwrap()
 }
 
 fn fewest_moves() -> Options {
@@ -79,8 +82,8 @@ fn a_robot_that_is_elsewhere_is_told_apart() {
 fn weaker_connectors_divide_the_margin() {
     let mut problem = cubes("overhang");
     let utilisation = |problem: &Problem<Configuration>| {
-        let assembly = crate::reconfigure::assembly::assemble(&problem.start);
-        crate::statics::assess(&assembly.structure, crate::statics::Question::VALUE).unwrap().utilisation.upper
+        let assembly = steadfast::reconfigure::assembly::assemble(&problem.start);
+        steadfast::statics::assess(&assembly.structure, steadfast::statics::Question::VALUE).unwrap().utilisation.upper
     };
     let before = utilisation(&problem);
     for connector in problem.start.catalogue.connectors.clone() {
