@@ -1,8 +1,10 @@
-//! The second method's opinion on a structure, where it can be sure of it.
+//! The second method's opinion on a structure, where it can be sure of it, and that of
+//! the same solver with twice the digits.
 
 use steadfast::statics::{Assessment, Bracket, Structure, Verdict};
 
 use super::paper::{self, Answer};
+use super::reference::{Missing, Reference, estimated};
 
 /// Tolerances that it is asked at. Where the first does not agree with the oracle, it
 /// is sure if all of them give one answer: one status alone is not to be believed.
@@ -44,6 +46,21 @@ pub fn opinion(structure: &Structure, answer: &Assessment) -> Opinion {
         sure = Some(opinion);
     }
     sure.unwrap_or(Opinion::None)
+}
+
+/// Whether the standard form in double-double arithmetic is sure of `answer`: that some
+/// value in its bracket, up to `width`, is the utilisation, or that no strength suffices.
+pub fn twice_the_digits_agree(structure: &Structure, answer: &Assessment, width: f64) -> bool {
+    let Bracket { lower, upper } = answer.utilisation;
+    match estimated(structure) {
+        Ok(Reference { value, uncertainty }) => {
+            let room = width * value.max(1.0);
+            let close = lower - room <= value && value <= upper + room;
+            close && upper.is_finite() && uncertainty <= SAME * value.max(1.0)
+        }
+        Err(Missing::Infeasible) => answer.verdict == Verdict::WholeBodyUnstable,
+        Err(Missing::Vague(_)) => false,
+    }
 }
 
 impl Opinion {

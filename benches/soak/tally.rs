@@ -199,7 +199,8 @@ impl<'t> Record<'t> {
              *differ*: the second method, the paper's formulation in a general solver asked at up to three tolerances, is sure\n\
              of another answer, or the oracle's own two answers contradict each other. *not proved*: the independent re-check\n\
              of the fields finds fault. *settled*: one of these had a complaint, but a certificate of the answer, issued and\n\
-             checked in interval arithmetic, proves verdict and bracket; such are not counted as differing or not proved.\n\
+             checked in interval arithmetic, proves verdict and bracket, or the same solver with twice the digits is sure of a\n\
+             value in the bracket; such are not counted as differing or not proved.\n\
              *undecided*: though t is not proved to be within 1e-3 of 1. *too wide*: the bracket is\n\
              wider than 1e-6 of the larger of t and 1. Times are of the value, in parallel with the others.\n\n",
             self.tally.total(),
@@ -214,7 +215,7 @@ impl<'t> Record<'t> {
         }
         for (title, names) in [
             ("Wrong", &self.tally.faults),
-            ("Settled by a certificate", &self.tally.settled),
+            ("Settled", &self.tally.settled),
             ("Undecided", &self.tally.open),
             ("Too wide", &self.tally.wide),
         ] {

@@ -36,6 +36,8 @@ pub enum Limit {
     Cancelled,
     /// Everything was searched, but certified intervals are too wide to decide.
     Precision,
+    /// The method looks at a part of all paths only, and has looked at all of that. No engine of this package ends so.
+    Incomplete,
 }
 
 /// What a search has done so far.

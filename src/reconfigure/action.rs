@@ -32,6 +32,14 @@ impl Action {
         matches!(self, Self::Move { .. })
     }
 
+    /// The module that it moves.
+    pub const fn moved(&self) -> Option<usize> {
+        match self {
+            Self::Move { module, .. } => Some(*module),
+            Self::Attach(_) | Self::Detach(_) => None,
+        }
+    }
+
     /// Its kind as plans write it; of a move `move`, whatever its motion is called.
     pub const fn kind(&self) -> &'static str {
         match self {

@@ -15,7 +15,7 @@ use super::moves::Move;
 use super::oracle::{Oracle, Worst};
 use super::problem::Problem;
 use super::recollection::Recollection;
-use super::ways::fitting;
+use super::ways::{fitting, fitting_of};
 
 /// A problem with everything that answers questions about its states.
 pub struct Domain<'a> {
@@ -76,12 +76,27 @@ impl<'a> Domain<'a> {
     /// not forbidden, in a fixed order, whatever is engaged.
     pub fn moves(&self, layout: &Layout) -> Vec<Move> {
         let mut moves = fitting(layout, |class| self.problem.ability(class));
-        moves.retain(|&step| !self.stay.contains(&step.from) && self.is_clear(layout, step));
+        moves.retain(|&step| {
+            let class = layout.placed()[layout.at(step.from).expect("a fitting move has a module")].class;
+            self.is_open(class, step)
+        });
         moves
     }
 
-    fn is_clear(&self, layout: &Layout, step: Move) -> bool {
-        let class = layout.placed()[layout.at(step.from).expect("a fitting move has a module")].class;
+    /// The moves of one module that fit among the others of `layout`, which need not hold it, and
+    /// hit neither ground nor obstacles.
+    pub fn moves_of(&self, layout: &Layout, placed: &Placed) -> Vec<Move> {
+        let mut moves = fitting_of(layout, placed, |class| self.problem.ability(class));
+        moves.retain(|&step| self.is_open(placed.class, step));
+        moves
+    }
+
+    /// Whether a module of some class may take a move, and hits neither ground nor obstacles.
+    fn is_open(&self, class: u16, step: Move) -> bool {
+        !self.stay.contains(&step.from) && self.is_clear(class, step)
+    }
+
+    fn is_clear(&self, class: u16, step: Move) -> bool {
         let module_type = self.problem.class(class).module_type;
         self.clear.get((step, module_type), |_| {
             let shape = self.problem.start().catalogue.module_types[module_type].body().shape.clone();

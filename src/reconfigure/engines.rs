@@ -42,6 +42,9 @@ pub trait Translation<S: Space> {
     fn plan(&self, path: &[S::Action]) -> Plan<Self::Action, Self::Connection>;
 }
 
+/// Which modules are where they were at the start in all of some states, where that can be told.
+pub type Unmoved<'u, S> = &'u dyn Fn(&[&<S as Space>::State]) -> Option<Vec<usize>>;
+
 /// What a translation's searches tell.
 pub type EventOf<T, S> = Event<<T as Translation<S>>::Action, <T as Translation<S>>::Connection>;
 
@@ -143,7 +146,7 @@ impl Task<'_> {
         space: &S,
         translation: &T,
         report: &ReportOf<T, S>,
-        unmoved: &dyn Fn(&[&S::State]) -> Option<Vec<usize>>,
+        unmoved: Unmoved<'_, S>,
     ) -> Option<InTheWay<T::Action, T::Connection>>
     where
         T::Connection: Copy + PartialEq,
@@ -158,7 +161,9 @@ impl Task<'_> {
         });
         options.budget.max_expansions = Some(report.statistics.expanded.saturating_mul(2).max(EXPLANATION));
         let mut search = Search::new(space, options);
-        let widest = search.widest(f64::NEG_INFINITY);
+        // With a path in hand early, whatever ends it.
+        let shortest: Shortest<'_, S> = &|search, floor| search.shortest(floor);
+        let widest = search.anytime_margin(f64::NEG_INFINITY, shortest, &mut |_| {});
         let plan = widest.best().map(|path| translation.plan(&actions::<S>(path)));
         let at_most = widest.proof().map_or(f64::NEG_INFINITY, |proof| proof.width_at_most);
         let mut found = InTheWay::new(plan, at_most, required);

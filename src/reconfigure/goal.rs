@@ -76,6 +76,26 @@ impl GoalTest {
         self.free
     }
 
+    /// The goal's layout where it has most modules of `layout` in place already: in a free frame over all turns, and
+    /// all displacements for which the bounding boxes meet; of equals the first.
+    pub fn placed_best(&self, layout: &Layout) -> Layout {
+        if !self.free {
+            return self.forms[0].layout.clone();
+        }
+        let here = bounds(layout);
+        let in_place = |placed: &Layout| {
+            let stays = |p: &&Placed| layout.at(p.cell).is_some_and(|at| layout.placed()[at].class == p.class);
+            placed.placed().iter().filter(stays).count()
+        };
+        let placings = self.forms.iter().flat_map(|form| {
+            let [xs, ys] = [0, 1].map(|i| here[i][0] - form.bounds[i][1]..=here[i][1] - form.bounds[i][0]);
+            xs.flat_map(move |x| ys.clone().map(move |y| form.layout.displaced([x, y, 0])))
+        });
+        let counted = placings.map(|placed| (in_place(&placed), placed));
+        let best = counted.reduce(|best, next| if next.0 > best.0 { next } else { best });
+        best.map_or_else(|| self.forms[0].layout.clone(), |(_, placed)| placed)
+    }
+
     /// How a layout fills the goal's cells, if it does.
     pub fn arrival(&self, layout: &Layout) -> Option<Arrival> {
         let corner = bounds(layout).map(|[low, _]| low);

@@ -10,6 +10,7 @@ pub mod assembly;
 mod assembly_laws;
 #[cfg(test)]
 mod assembly_tests;
+mod baseline;
 mod compose;
 mod course;
 mod decides;
@@ -17,9 +18,11 @@ mod decision;
 mod domain;
 mod engines;
 mod goal;
+mod hanging;
 mod herald;
 mod heuristic;
 mod in_the_way;
+mod large;
 mod layout;
 pub mod linkage;
 mod local;
@@ -46,6 +49,7 @@ mod worst;
 
 pub use crate::robot::{Motion, Turn};
 pub use action::Action;
+pub use baseline::Baseline;
 pub use engines::MARGIN_TOLERANCE;
 pub use in_the_way::InTheWay;
 pub use layout::{Bond, Layout, Placed};

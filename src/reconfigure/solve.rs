@@ -9,10 +9,12 @@ use crate::robot::{Configuration, FaceConnection, Goal};
 use crate::statics::Bracket;
 
 use super::action::Action;
+use super::baseline::{Baseline, Blind, Eager};
 use super::compose::{compose, expand, ports};
 use super::domain::{Domain, width};
 use super::engines::{Task, Translation};
-use super::options::{Event, Options, Reduction};
+use super::large::{self, EXACT_MODULES, decompose};
+use super::options::{Event, Method, Options, Reduction};
 use super::oracle::Worst;
 use super::plan::{Plan, Report};
 use super::primitive::Primitive;
@@ -58,15 +60,26 @@ pub fn solve(
     let task = Task { options, required, began, solves: &solves };
     let mut report = match ends.reason(&domain, goal, required) {
         Some(reason) => Report::impossible(options.objective, required, reason),
+        None if is_for_decomposition(&problem, options) => {
+            let ends = large::Ends { start: ends.start, goal: ends.goal };
+            decompose(&domain, options, (required, ends), began, on_event)
+        }
         None => match options.reduction {
             Reduction::Saturated => {
                 let space = Saturated::new(&domain, ends.start_width(), ends.at_most());
                 let steps = |path: &[saturated::Action]| expand(&problem, path);
                 let plans = Plans { domain: &domain, steps };
                 // Where it is known what the goal looks like, the search comes from there as well.
-                match space.goals().is_empty() {
-                    true => task.run(&space, &plans, on_event),
-                    false => task.run_with(&space, &plans, &|search, floor| search.from_both_ends(floor), on_event),
+                match options.baseline {
+                    None if space.goals().is_empty() => task.run(&space, &plans, on_event),
+                    None => task.run_with(&space, &plans, &|search, floor| search.from_both_ends(floor), on_event),
+                    Some(Baseline::Blind) => task.run(&Blind(&space), &plans, on_event),
+                    Some(Baseline::Eager) => {
+                        let steps = |path: &[(saturated::Action, [f64; 2])]| {
+                            expand(&problem, &path.iter().map(|(action, _)| *action).collect::<Vec<_>>())
+                        };
+                        task.run(&Eager(&space), &Plans { domain: &domain, steps }, on_event)
+                    }
                 }
             }
             Reduction::Primitive => {
@@ -83,10 +96,22 @@ pub fn solve(
     if let Some(fault) = domain.oracle.fault() {
         return Err(Refusal::Structure(fault));
     }
-    report.statistics.oracle_solves = domain.oracle.solves();
+    report.statistics.oracle_solves += domain.oracle.solves();
     report.statistics.decided_by = domain.oracle.tally();
     report.statistics.seconds = began.elapsed().as_secs_f64();
     Ok(report)
+}
+
+/// Whether a problem is decomposed rather than searched.
+fn is_for_decomposition(problem: &Problem, options: &Options) -> bool {
+    match options.method {
+        Method::Exact => false,
+        Method::Decompose => true,
+        Method::Auto => {
+            let movable = problem.start().modules.iter().filter(|module| !module.fixed).count();
+            movable > EXACT_MODULES && options.reduction == Reduction::Saturated && options.plans <= 1
+        }
+    }
 }
 
 /// The two ends of every plan.

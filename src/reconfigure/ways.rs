@@ -4,7 +4,7 @@
 
 use crate::robot::{Catalogue, Cell, Face, Motion, Stencil};
 
-use super::layout::{Bond, Layout, displaced, neighbour};
+use super::layout::{Bond, Layout, Placed, displaced, neighbour};
 use super::moves::Move;
 
 /// A motion in one orientation, for a module in cell `[0, 0, 0]`.
@@ -122,19 +122,20 @@ impl Ability {
 /// Every move that fits among the modules of `layout`, whatever is engaged. In a
 /// fixed order: by the moving module's cell, translations before rotations.
 pub fn fitting<'a>(layout: &Layout, ability: impl Fn(u16) -> &'a Ability) -> Vec<Move> {
-    let mut moves = Vec::new();
-    for placed in layout.placed() {
-        let able = ability(placed.class);
-        let carries = |support| {
-            let at = layout.at(neighbour(placed.cell, support));
-            able.hinge && at.is_some_and(|at| ability(layout.placed()[at].class).hinge)
-        };
-        let is_hinged = |way: &&Way| match way.motion {
-            Motion::Translation { .. } => true,
-            Motion::Rotation { support, .. } => carries(support),
-        };
-        let ways = able.ways.iter().filter(|way| way.fits(placed.cell, layout)).filter(is_hinged);
-        moves.extend(ways.map(|way| Move { from: placed.cell, motion: way.motion, kind: way.kind }));
-    }
-    moves
+    layout.placed().iter().flat_map(|placed| fitting_of(layout, placed, &ability)).collect()
+}
+
+/// Every move of one module that fits among the others of `layout`, translations before rotations.
+pub fn fitting_of<'a>(layout: &Layout, placed: &Placed, ability: impl Fn(u16) -> &'a Ability) -> Vec<Move> {
+    let able = ability(placed.class);
+    let carries = |support| {
+        let at = layout.at(neighbour(placed.cell, support));
+        able.hinge && at.is_some_and(|at| ability(layout.placed()[at].class).hinge)
+    };
+    let is_hinged = |way: &&Way| match way.motion {
+        Motion::Translation { .. } => true,
+        Motion::Rotation { support, .. } => carries(support),
+    };
+    let ways = able.ways.iter().filter(|way| way.fits(placed.cell, layout)).filter(is_hinged);
+    ways.map(|way| Move { from: placed.cell, motion: way.motion, kind: way.kind }).collect()
 }

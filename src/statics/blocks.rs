@@ -81,7 +81,7 @@ pub(super) fn cut(structure: &Structure) -> Blocks {
     let mut search = Search::new(&graph);
     search.grow(Vertex::Ground);
     for (i, body) in structure.bodies.iter().enumerate() {
-        if !body.fixed && search.entered[i + 1] == 0 {
+        if !body.fixed && search.is_new(number(Vertex::Body(i))) {
             search.found.afloat.push(i);
             search.grow(Vertex::Body(i));
         }
@@ -91,119 +91,148 @@ pub(super) fn cut(structure: &Structure) -> Blocks {
     found
 }
 
-/// Adjacency in compressed rows: vertex 0 is the ground, `i + 1` is body `i`.
+/// Adjacency in compressed rows: vertex 0 is the ground, `i + 1` is body `i`. Numbers are short,
+/// since a search through a large structure waits for memory.
 struct Graph {
-    links: Vec<(Link, [usize; 2])>,
-    first: Vec<usize>,
-    incident: Vec<usize>,
+    /// Number of connections: links are numbered in the structure's order, contacts after them.
+    connections: usize,
+    /// Where the links of each vertex begin; one more for the end.
+    first: Vec<u32>,
+    /// Per vertex and link there: the link, and the vertex at its other end.
+    incident: Vec<[u32; 2]>,
 }
 
-fn number(vertex: Vertex) -> usize {
+fn number(vertex: Vertex) -> u32 {
     match vertex {
         Vertex::Ground => 0,
-        Vertex::Body(i) => i + 1,
+        Vertex::Body(i) => short(i + 1),
     }
 }
 
-fn unnumber(number: usize) -> Vertex {
-    if number == 0 { Vertex::Ground } else { Vertex::Body(number - 1) }
+fn unnumber(number: u32) -> Vertex {
+    if number == 0 { Vertex::Ground } else { Vertex::Body(number as usize - 1) }
+}
+
+fn short(index: usize) -> u32 {
+    u32::try_from(index).expect("memory ends long before four thousand million bodies or links")
 }
 
 impl Graph {
     fn new(structure: &Structure) -> Self {
-        let connections = (0..structure.connections.len()).map(Link::Connection);
-        let contacts = (0..structure.contacts.len()).map(Link::Contact);
-        let links: Vec<(Link, [usize; 2])> = connections
-            .chain(contacts)
-            .map(|link| (link, ends(structure, link).map(number)))
-            .filter(|(_, [a, b])| a != b)
-            .collect();
+        let connections = structure.connections.len();
+        let links = (0..connections).map(Link::Connection);
+        let links = links.chain((0..structure.contacts.len()).map(Link::Contact));
+        let joined: Vec<[u32; 2]> = links.map(|link| ends(structure, link).map(number)).collect();
+        let apart = |(_, [a, b]): &(usize, &[u32; 2])| a != b;
         let mut first = vec![0; structure.bodies.len() + 2];
-        for (_, ends) in &links {
+        for (_, ends) in joined.iter().enumerate().filter(apart) {
             for end in ends {
-                first[end + 1] += 1;
+                first[*end as usize + 1] += 1;
             }
         }
         for i in 1..first.len() {
             first[i] += first[i - 1];
         }
         let mut next = first.clone();
-        let mut incident = vec![0; 2 * links.len()];
-        for (index, (_, ends)) in links.iter().enumerate() {
-            for end in ends {
-                incident[next[*end]] = index;
-                next[*end] += 1;
+        let mut incident = vec![[0; 2]; first[first.len() - 1] as usize];
+        for (index, &[a, b]) in joined.iter().enumerate().filter(apart) {
+            for (end, other) in [(a, b), (b, a)] {
+                let place = &mut next[end as usize];
+                incident[*place as usize] = [short(index), other];
+                *place += 1;
             }
         }
-        Self { links, first, incident }
+        Self { connections, first, incident }
     }
+
+    fn link(&self, number: u32) -> Link {
+        let number = number as usize;
+        number.checked_sub(self.connections).map_or(Link::Connection(number), Link::Contact)
+    }
+}
+
+/// When the search came to a vertex.
+#[derive(Clone, Copy, Default)]
+struct Visit {
+    /// Order of entry from 1, 0 before.
+    entered: u32,
+    /// Earliest entry that the subtree reaches over one back edge.
+    low: u32,
+}
+
+/// A vertex on the way from the root to where the search is.
+struct Step {
+    at: u32,
+    /// The link over which it was entered; that of the root is none of the graph's.
+    over: u32,
+    /// Its next incident link.
+    next: u32,
+    /// How many links and bodies were open before it was entered.
+    links_before: usize,
+    bodies_before: usize,
 }
 
 struct Search<'g> {
     graph: &'g Graph,
-    /// Order of entry from 1, 0 before.
-    entered: Vec<usize>,
-    /// Earliest entry that the subtree reaches over one back edge.
-    low: Vec<usize>,
-    clock: usize,
-    used: Vec<bool>,
-    open_links: Vec<usize>,
+    visits: Vec<Visit>,
+    clock: u32,
+    open_links: Vec<u32>,
     open_bodies: Vec<usize>,
     found: Blocks,
 }
 
 impl<'g> Search<'g> {
     fn new(graph: &'g Graph) -> Self {
-        let vertices = graph.first.len() - 1;
         Self {
             graph,
-            entered: vec![0; vertices],
-            low: vec![0; vertices],
+            visits: vec![Visit::default(); graph.first.len() - 1],
             clock: 0,
-            used: vec![false; graph.links.len()],
             open_links: Vec::new(),
             open_bodies: Vec::new(),
             found: Blocks::default(),
         }
     }
 
-    fn enter(&mut self, vertex: usize) {
+    fn is_new(&self, vertex: u32) -> bool {
+        self.visits[vertex as usize].entered == 0
+    }
+
+    /// Enters a vertex over a link; the step that leads on from there.
+    fn enter(&mut self, at: u32, over: u32) -> Step {
         self.clock += 1;
-        self.entered[vertex] = self.clock;
-        self.low[vertex] = self.clock;
+        self.visits[at as usize] = Visit { entered: self.clock, low: self.clock };
+        let (links_before, bodies_before) = (self.open_links.len(), self.open_bodies.len());
+        Step { at, over, next: self.graph.first[at as usize], links_before, bodies_before }
     }
 
     /// Depth-first search from `root`. A block is complete, and is cut off, when
     /// the search returns over its first edge; blocks farther from the root
     /// complete earlier.
     fn grow(&mut self, root: Vertex) {
-        // (vertex, next incident link, open links and bodies before it was entered)
-        let root = number(root);
-        self.enter(root);
-        let mut path = vec![(root, self.graph.first[root], 0, 0)];
-        while let Some(&mut (at, ref mut next, links_before, bodies_before)) = path.last_mut() {
-            if *next < self.graph.first[at + 1] {
-                let link = self.graph.incident[*next];
+        let mut path = vec![self.enter(number(root), u32::MAX)];
+        while let Some(&mut Step { at, over, ref mut next, links_before, bodies_before }) = path.last_mut() {
+            if *next < self.graph.first[at as usize + 1] {
+                let [link, other] = self.graph.incident[*next as usize];
                 *next += 1;
-                if std::mem::replace(&mut self.used[link], true) {
+                if link == over {
                     continue;
                 }
-                let [a, b] = self.graph.links[link].1;
-                let other = if a == at { b } else { a };
-                let marks = (self.open_links.len(), self.open_bodies.len());
-                self.open_links.push(link);
-                if self.entered[other] == 0 {
-                    self.enter(other);
-                    self.open_bodies.push(other - 1);
-                    path.push((other, self.graph.first[other], marks.0, marks.1));
-                } else {
-                    self.low[at] = self.low[at].min(self.entered[other]);
+                if self.is_new(other) {
+                    let step = self.enter(other, link);
+                    self.open_links.push(link);
+                    self.open_bodies.push(other as usize - 1);
+                    path.push(step);
+                } else if self.visits[other as usize].entered < self.visits[at as usize].entered {
+                    self.open_links.push(link);
+                    self.reaches(at, self.visits[other as usize].entered);
                 }
+                // Otherwise it leads to where the search came back from, and was followed from there.
             } else {
                 path.pop();
-                if let Some(&(parent, ..)) = path.last() {
-                    self.low[parent] = self.low[parent].min(self.low[at]);
-                    if self.low[at] >= self.entered[parent] {
+                if let Some(&Step { at: parent, .. }) = path.last() {
+                    let low = self.visits[at as usize].low;
+                    self.reaches(parent, low);
+                    if low >= self.visits[parent as usize].entered {
                         self.close(parent, links_before, bodies_before);
                     }
                 }
@@ -211,10 +240,16 @@ impl<'g> Search<'g> {
         }
     }
 
-    fn close(&mut self, root: usize, links_before: usize, bodies_before: usize) {
+    /// Notes that the subtree of a vertex reaches one that was entered then.
+    fn reaches(&mut self, vertex: u32, entered: u32) {
+        let low = &mut self.visits[vertex as usize].low;
+        *low = entered.min(*low);
+    }
+
+    fn close(&mut self, root: u32, links_before: usize, bodies_before: usize) {
         let numbers = &mut self.open_links[links_before..];
         numbers.sort_unstable();
-        let links = numbers.iter().map(|&link| self.graph.links[link].0).collect();
+        let links = numbers.iter().map(|&link| self.graph.link(link)).collect();
         self.open_links.truncate(links_before);
         let bodies = &mut self.open_bodies[bodies_before..];
         bodies.sort_unstable();
@@ -281,7 +316,7 @@ mod tests {
             let mut seen = vec![0; bodies + 1];
             let mut links = BTreeSet::new();
             for block in &found.blocks {
-                for vertex in block.bodies.iter().map(|&i| i + 1).chain([number(block.root)]) {
+                for vertex in block.bodies.iter().map(|&i| i + 1).chain([number(block.root) as usize]) {
                     seen[vertex] += 1;
                 }
                 for link in &block.links {
@@ -309,7 +344,7 @@ mod tests {
         let mut held = BTreeSet::from([0]);
         for block in &found.blocks {
             assert!(held.contains(&number(block.root)), "{block:?}");
-            held.extend(block.bodies.iter().map(|&i| i + 1));
+            held.extend(block.bodies.iter().map(|&i| number(Vertex::Body(i))));
         }
         assert_eq!(held.len(), 6);
     }

@@ -8,7 +8,8 @@
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSettingsBuilder, DefaultSolver, IPSolver, SupportedConeT};
 
-use super::program::{Cone, Group, Program};
+use super::groups::{Cone, Group};
+use super::program::Program;
 use super::respect::respect_unlimited;
 
 /// One way of asking the solver.

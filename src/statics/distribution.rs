@@ -29,9 +29,10 @@ use super::balance::restore;
 use super::blocks::{Block, Link};
 use super::bracket::Problem;
 use super::conic::{Attempt, Iterate, settings};
+use super::groups::Cone;
 use super::loads::BodyLoad;
 use super::part::Part;
-use super::program::{Cone, Program, Purpose};
+use super::program::{Program, Purpose};
 use super::structure::Structure;
 
 /// Ways of asking the solver, tried in turn.

@@ -5,11 +5,12 @@
 
 use super::assess::pieces;
 use super::blocks::{Block, Link};
+use super::groups::Cone;
 use super::loads::{BodyLoad, lump, own_loads};
 use super::network::Network;
 use super::parts::{Part, parts};
 use super::planar::{NotPlanar, Planar};
-use super::program::{Cone, Program, Purpose};
+use super::program::{Program, Purpose};
 use super::reductions::Reductions;
 use super::rigid_links::{Merged, unlimited};
 use super::structure::Structure;

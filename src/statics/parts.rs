@@ -1,7 +1,8 @@
 //! A block's program as columns: what each group of variables does to the balances.
 
 use super::conic::inset_of;
-use super::program::{Cone, Form, Group, Program};
+use super::groups::{Cone, Form, Group};
+use super::program::Program;
 use super::tolerances::ROUNDING;
 
 /// Scaled force at which a cone starts: about what the spanning tree carries.

@@ -8,7 +8,8 @@
 use clarabel::algebra::CscMatrix;
 use clarabel::qdldl::{QDLDLFactorisation, QDLDLSettingsBuilder};
 
-use super::program::{Cone, Program};
+use super::groups::Cone;
+use super::program::Program;
 
 /// Rounds of correction.
 const ROUNDS: usize = 4;

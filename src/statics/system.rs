@@ -12,14 +12,14 @@
 
 use nalgebra::SMatrix;
 
-use super::element::{Element, End, Rows};
+use super::element::{Element, Rows};
+use super::families::{Families, Family, each};
+use super::groups::Cone;
 use super::network::Network;
 use super::normal::{Normal, Solution};
 use super::parts::{Part, START};
-use super::program::Cone;
 use super::second_order::dot;
 use super::series::flexibility_root;
-use super::stiffness::Matrix;
 
 /// Imbalance of a step, as a share of the complementarity that is left, above which
 /// it is corrected: below, it would change nothing.
@@ -31,85 +31,6 @@ const HELPS: f64 = 0.5;
 
 /// How much longer a step is wished for when it is bent.
 const FURTHER: f64 = 0.3;
-
-/// All elements of one size.
-struct Family<const D: usize, const N: usize> {
-    elements: Vec<Element<D, N>>,
-    /// Per element its first variable.
-    first: Vec<usize>,
-    /// Per element its constant part of the stiffness; empty for single variables.
-    reflected: Vec<[Matrix<D>; 3]>,
-}
-
-impl<const D: usize, const N: usize> Default for Family<D, N> {
-    fn default() -> Self {
-        Self { elements: Vec::new(), first: Vec::new(), reflected: Vec::new() }
-    }
-}
-
-impl<const D: usize, const N: usize> Family<D, N> {
-    /// Adds an element; its index.
-    fn add(&mut self, part: &Part<D>, cost: f64, start: f64) -> usize {
-        let end = |end: &Option<(usize, [Rows<D>; 6])>| {
-            end.as_ref().map(|(body, columns)| End { body: *body, columns: std::array::from_fn(|k| columns[k]) })
-        };
-        self.elements.push(Element::new(
-            part.ends.each_ref().map(end),
-            part.cone == Cone::Free,
-            cost,
-            [start * part.start, part.start.recip()],
-        ));
-        self.first.push(part.first);
-        self.first.len() - 1
-    }
-
-    fn place(&mut self, network: &Network<D>) {
-        for element in &mut self.elements {
-            element.place(network);
-        }
-        if N > 1 {
-            self.reflected = self.elements.iter().map(Element::reflected).collect();
-        }
-    }
-
-    fn add_stiffness(&self, network: &mut Network<D>) {
-        for (index, element) in self.elements.iter().enumerate() {
-            element.add_stiffness(self.reflected.get(index), network.matrix_mut());
-        }
-    }
-
-    fn forces(&self, each: &mut impl FnMut(usize, &[f64])) {
-        for (element, first) in self.elements.iter().zip(&self.first) {
-            each(*first, &element.x);
-        }
-    }
-}
-
-/// Evaluates an expression for every element, whatever its size.
-macro_rules! each {
-    ($families:expr, $iter:ident, $element:ident => $body:expr) => {
-        for $element in $families.one.elements.$iter() {
-            $body
-        }
-        for $element in $families.two.elements.$iter() {
-            $body
-        }
-        for $element in $families.three.elements.$iter() {
-            $body
-        }
-        for $element in $families.six.elements.$iter() {
-            $body
-        }
-    };
-}
-
-/// The elements by number of variables.
-struct Families<const D: usize> {
-    one: Family<D, 1>,
-    two: Family<D, 2>,
-    three: Family<D, 3>,
-    six: Family<D, 6>,
-}
 
 /// The row that ties two single variables, its unknown motion eliminated.
 struct Tie {

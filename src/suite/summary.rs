@@ -187,6 +187,7 @@ fn ending_word(record: &Record) -> &'static str {
         Ending::Stopped(Limit::Expansions) => "expansion limit",
         Ending::Stopped(Limit::Cancelled) => "interrupted",
         Ending::Stopped(Limit::Precision) => "margins too close to decide",
+        Ending::Stopped(Limit::Incomplete) => "nothing found by a method that looks for some plans only",
         Ending::Crashed(_) => "crashed",
         Ending::Refused(_) => "no such problem",
     }

@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use crate::{bench, generate};
 use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
+use steadfast::robot::Region;
 
-use crate::restrictions::Restrictions;
+use crate::{bench, generate};
 
 /// Reconfiguration planner for modular robots in which every transient state is proved stable
 #[derive(Debug, Parser)]
@@ -27,8 +27,10 @@ pub struct Arguments {
 const EXIT_CODES: &str = "Exit codes: 0 plan found, structure stable, plan verified; 2 usage; 10 proved that no plan \
 exists, structure unstable, plan does not verify; 11 not decided within the limits; 30 bad input; 101 a bug";
 
-/// What `plan START GOAL` can be asked.
+/// What `plan START GOAL` can be asked. It is there when these two are: without their names in the group, the arguments
+/// that are flattened into it would leave the group empty.
 #[derive(Debug, Args)]
+#[group(args = ["start", "goal"])]
 pub struct PlanningArguments {
     /// Where the robot is: a configuration/1 file
     #[arg(required = true)]
@@ -76,8 +78,17 @@ pub struct PlanningArguments {
     /// How to look for plans of lattice robots
     #[arg(long, value_enum, default_value_t = PlannerArgument::Auto)]
     pub planner: PlannerArgument,
-    #[command(flatten)]
-    pub restrictions: Restrictions,
+    /// A module that no action may move, though nothing else holds it; may be given several times
+    #[arg(long, value_name = "ID")]
+    pub forbid_module: Vec<String>,
+    /// A box that no move may pass through, by its lowest and highest corner in m; may be given several times
+    #[arg(
+        long,
+        value_name = "X0,Y0,Z0,X1,Y1,Z1",
+        value_parser = crate::restrictions::region,
+        allow_hyphen_values = true
+    )]
+    pub forbid_region: Vec<Region>,
 }
 
 /// `--planner`.

@@ -107,5 +107,6 @@ pub(super) fn limit(wire: wire::StoppedBy) -> Limit {
         wire::StoppedBy::Memory => Limit::Memory,
         wire::StoppedBy::Cancelled => Limit::Cancelled,
         wire::StoppedBy::Precision => Limit::Precision,
+        wire::StoppedBy::Incomplete => Limit::Incomplete,
     }
 }

@@ -90,4 +90,6 @@ pub(crate) enum StoppedBy {
     Cancelled,
     /// Everything was searched, but intervals on margins are too wide to decide.
     Precision,
+    /// The method looks for some plans only, and found none that is better.
+    Incomplete,
 }

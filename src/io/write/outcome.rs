@@ -43,6 +43,7 @@ pub(super) fn limit(limit: Limit) -> wire::StoppedBy {
         Limit::Memory => wire::StoppedBy::Memory,
         Limit::Cancelled => wire::StoppedBy::Cancelled,
         Limit::Precision => wire::StoppedBy::Precision,
+        Limit::Incomplete => wire::StoppedBy::Incomplete,
     }
 }
 

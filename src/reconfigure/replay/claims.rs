@@ -34,6 +34,30 @@ fn agree(a: Bracket, b: Bracket, tolerance: f64) -> bool {
     close(a.lower, b.lower) && close(a.upper, b.upper)
 }
 
+/// The margin that replaying has to confirm where a claim is a bound rather than a value: its lower end, less what
+/// another grid of samples may find during a move.
+pub(in crate::reconfigure) fn bound(claim: &Bracket, is_move: bool) -> Option<f64> {
+    let less = if is_move { tolerance(claim.lower) } else { same_state(claim.lower) };
+    let least = claim.lower - less;
+    let least = if claim.lower >= 0.0 { least.max(0.0) } else { least };
+    is_bound(claim).then_some(least)
+}
+
+/// Whether a claim leaves open what the value is.
+fn is_bound(claim: &Bracket) -> bool {
+    claim.lower.is_finite() && claim.upper - claim.lower > same_state(claim.lower)
+}
+
+/// Whether a margin that was found is as claimed: the same value, or at least the claimed bound and not
+/// surely above it.
+fn confirms(found: Bracket, claimed: Bracket, tolerance: f64) -> bool {
+    if is_bound(&claimed) {
+        found.lower >= claimed.lower - tolerance && found.lower <= claimed.upper + tolerance
+    } else {
+        agree(claimed, found, tolerance)
+    }
+}
+
 /// Compares a plan's claims with the margins found: of the start, then of
 /// every action that could be replayed. `moves` is how many of the actions are moves.
 pub(in crate::reconfigure) fn check<A, C: Copy + PartialEq, T>(
@@ -53,8 +77,8 @@ pub(in crate::reconfigure) fn check<A, C: Copy + PartialEq, T>(
         let Some(claimed) = planned.margin else { continue };
         let allowed = if found.exact { same_state(claimed.lower) } else { tolerance(claimed.lower) };
         let there = planned.phase.map(|phase| margin_of(found.at(phase)));
-        let holds = agree(claimed, found.margin, allowed)
-            && there.is_none_or(|there| there.is_some_and(|there| agree(claimed, there, same_state(claimed.lower))));
+        let at_phase = |there: Bracket| is_bound(&claimed) || agree(claimed, there, same_state(claimed.lower));
+        let holds = confirms(found.margin, claimed, allowed) && there.is_none_or(|there| there.is_some_and(at_phase));
         if !holds {
             let fault = Fault::MarginDiffers { claimed, found: there.flatten().unwrap_or(found.margin) };
             checker.fail(Some(index), None, fault, None);
@@ -76,6 +100,16 @@ fn check_whole<A, C: Copy + PartialEq, T>(checker: &mut Judge<C, T>, plan: &Plan
         checker.fail(None, None, Fault::BottleneckDiffers, None);
         return;
     };
+    if is_bound(&claimed) {
+        let there = match bottleneck.action {
+            Some(action) => plan.actions.get(action).and_then(|planned| planned.margin),
+            None => Some(found[0].margin),
+        };
+        if !there.is_some_and(|there| (there.lower - claimed.lower).abs() <= same_state(claimed.lower)) {
+            checker.fail(bottleneck.action, Some(bottleneck.phase), Fault::BottleneckDiffers, None);
+        }
+        return;
+    }
     let place = bottleneck.action.map_or(Some(0), |action| action.checked_add(1));
     let samples = || place.and_then(|at| found.get(at)).into_iter().flat_map(|f| f.at(bottleneck.phase));
     let attained = samples().filter(|sample| agree(sample.margin, claimed, same_state(claimed.lower)));

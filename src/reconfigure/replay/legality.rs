@@ -112,7 +112,10 @@ fn stencil(
             base == Some(Some(support.step())) && by == Some(stencil.motion.by())
         }
     };
-    let leading: Vec<Stencil> = kind.stencils.iter().flat_map(Stencil::variants).filter(is_it).collect();
+    // Turning leaves a length as it is.
+    let length = |by: Cell| by.map(|c| i128::from(c).pow(2)).iter().sum::<i128>();
+    let may_be = kind.stencils.iter().filter(|stencil| by.map(length) == Some(length(stencil.motion.by())));
+    let leading: Vec<Stencil> = may_be.flat_map(Stencil::variants).filter(is_it).collect();
     if leading.is_empty() {
         return Err(Fault::NoSuchMotion);
     }

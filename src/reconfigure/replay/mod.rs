@@ -7,6 +7,7 @@
 //! assembly of structures and the oracle.
 
 mod arrival;
+mod bounded;
 pub(super) mod claims;
 pub(super) mod failure;
 pub(super) mod judge;
@@ -18,7 +19,7 @@ use crate::statics::Bracket;
 
 use super::action::Action;
 use super::assembly::{Assembler, Touched};
-use super::plan::{IfStronger, Moment, Plan};
+use super::plan::{IfStronger, Moment, Plan, PlannedAction};
 use super::refusal::{Refusal, check};
 pub use failure::{Failure, Fault};
 use judge::Found;
@@ -73,15 +74,23 @@ pub fn replay(start: &Configuration, goal: &Goal, plan: &Plan, required: f64) ->
 }
 
 /// The plan with its margins over time, from a replay of it, and with what it would be worth if its bottleneck were
-/// twice as strong, from another one.
+/// twice as strong, from another one. The latter is left out for a plan that claims bounds only.
 ///
 /// # Errors
 /// [`Refusal`] when start and goal themselves are unsound.
 pub fn appraise(start: &Configuration, goal: &Goal, plan: &Plan, replay: &Replay) -> Result<Plan, Refusal> {
-    let weakest = plan.bottleneck.as_ref().and_then(|bottleneck| bottleneck.connection);
+    let weakest = plan.bottleneck.as_ref().filter(|_| has_values(plan)).and_then(|bottleneck| bottleneck.connection);
     let again = weakest.map(|held| run(start, goal, plan, f64::NEG_INFINITY, Some((held, TWICE)))).transpose()?;
     let if_stronger = again.map(|again| IfStronger { factor: TWICE, margin: again.margin });
     Ok(Plan { profile: profile(replay), if_stronger, ..plan.clone() })
+}
+
+/// Whether a plan claims margins rather than bounds on them.
+fn has_values(plan: &Plan) -> bool {
+    let is_bound = |planned: &PlannedAction| {
+        planned.margin.is_some_and(|claim| claims::bound(&claim, planned.action.is_move()).is_some())
+    };
+    !plan.actions.iter().any(is_bound)
 }
 
 /// How much stronger a bottleneck is taken to be.
@@ -106,10 +115,15 @@ fn run(
     let mut state = start.clone();
     state.connections.sort_unstable();
 
-    let at_start = checker.rest(None, &state)?;
+    let at_start = checker.rest(None, &state, None)?;
     let mut found = vec![at_start];
     let mut legal = true;
+    let movers = neighbouring_movers(plan);
     for (index, planned) in plan.actions.iter().enumerate() {
+        let bound = planned
+            .margin
+            .filter(|_| stronger.is_none())
+            .and_then(|claim| claims::bound(&claim, planned.action.is_move()));
         match transition(&state, &planned.action) {
             Err(fault) => {
                 checker.judge.fail(Some(index), None, fault, None);
@@ -119,7 +133,8 @@ fn run(
             Ok(next) => {
                 let bottleneck = plan.bottleneck.as_ref().filter(|b| b.action == Some(index)).map(|b| b.phase);
                 let claimed: Vec<f64> = planned.phase.into_iter().chain(bottleneck).collect();
-                found.push(take(&mut checker, index, &state, &next, &claimed)?);
+                let by = Hint { claimed: &claimed, bound, hanging: movers[index] };
+                found.push(take(&mut checker, index, &state, &next, &by)?);
                 state = next.after;
             }
         }
@@ -132,13 +147,38 @@ fn run(
     }
     let margin = found.iter().map(|f| f.margin).reduce(Bracket::min).expect("the start was checked");
     let states = judge::states(&found);
-    Ok(Replay {
-        margin,
-        states,
-        actions_replayed,
-        oracle_solves: checker.judge.solves,
-        failures: checker.judge.failures,
-    })
+    let oracle_solves = checker.judge.solves + checker.bounds.solves();
+    Ok(Replay { margin, states, actions_replayed, oracle_solves, failures: checker.judge.failures })
+}
+
+/// What a plan says about an action that tells where and how tightly to look. Wrong hints cost time only.
+struct Hint<'a> {
+    /// Phases that are spoken of.
+    claimed: &'a [f64],
+    /// The margin that is to be confirmed, where the plan claims no value.
+    bound: Option<f64>,
+    /// Modules that may hang on all others, the likeliest first.
+    hanging: [Option<usize>; 2],
+}
+
+/// For every action the modules that are moved by the last move and by the next one: after a move or attaching the
+/// former is likely to hang on the others, before a move the latter.
+fn neighbouring_movers(plan: &Plan) -> Vec<[Option<usize>; 2]> {
+    let mut last = None;
+    let mut movers: Vec<[Option<usize>; 2]> = Vec::with_capacity(plan.actions.len());
+    for planned in &plan.actions {
+        last = planned.action.moved().or(last);
+        movers.push([last, None]);
+    }
+    let mut next = None;
+    for (planned, pair) in plan.actions.iter().zip(&mut movers).rev() {
+        pair[1] = next;
+        if matches!(planned.action, Action::Detach(_)) {
+            pair.swap(0, 1);
+        }
+        next = planned.action.moved().or(next);
+    }
+    movers
 }
 
 /// The state after actions, each of which must be legal in the state that it is taken in; forces and collisions play no
@@ -164,12 +204,13 @@ fn take(
     index: usize,
     before: &Configuration,
     next: &Transition,
-    claimed: &[f64],
+    by: &Hint,
 ) -> Result<Found<FaceConnection>, Refusal> {
     let during = match &next.path {
-        Some(path) => Some(checker.transit(index, before, path, claimed)?),
+        Some(path) => Some(checker.transit(index, before, path, by.claimed, by.bound)?),
         None => None,
     };
-    let rest = checker.rest(Some(index), &next.after)?;
+    let bounded = by.bound.map(|bound| (bound, by.hanging));
+    let rest = checker.rest(Some(index), &next.after, bounded)?;
     Ok(during.map_or(rest.clone(), |during| during.followed_by(rest)))
 }

@@ -10,6 +10,7 @@ use crate::reconfigure::stronger::strengthen;
 use crate::robot::{Configuration, FaceConnection, Placement, Port};
 use crate::statics::{Question, assess};
 
+use super::bounded::Bounds;
 use super::claims;
 use super::failure::Fault;
 use super::judge::{Found, Judge, Sample, phases};
@@ -22,6 +23,7 @@ pub(super) struct Checker<'a> {
     off_limits: Surroundings,
     /// A connection that is taken to be so many times as strong as it is.
     stronger: Option<(FaceConnection, f64)>,
+    pub bounds: Bounds<'a>,
     pub judge: Judge<FaceConnection, Touched>,
 }
 
@@ -35,11 +37,22 @@ impl<'a> Checker<'a> {
         let surroundings = Surroundings::new(&start.environment);
         let off_limits = Surroundings::new(&start.require.off_limits());
         let judge = Judge::new(required, start.require.connected);
-        Self { assembler, surroundings, off_limits, stronger, judge }
+        Self { assembler, surroundings, off_limits, stronger, bounds: Bounds::new(start), judge }
     }
 
-    /// Checks a state at rest.
-    pub fn rest(&mut self, action: Option<usize>, state: &Configuration) -> Result<Found<FaceConnection>, Refusal> {
+    /// Checks a state at rest: whether it has a margin, by bounds with one of two modules hanging on the others, where
+    /// that is enough; else its value.
+    pub fn rest(
+        &mut self,
+        action: Option<usize>,
+        state: &Configuration,
+        bounded: Option<(f64, [Option<usize>; 2])>,
+    ) -> Result<Found<FaceConnection>, Refusal> {
+        if let Some((least, hanging)) = bounded
+            && let Some(sample) = self.bounds.at_rest(state, hanging.into_iter().flatten(), least)
+        {
+            return Ok(self.judge.rest(action, sample));
+        }
         let placements: Vec<Placement> = state.modules.iter().map(|module| module.placement).collect();
         let engaged: Vec<_> = state.connections.iter().map(|c| Engagement::face(state, c)).collect();
         let at_rest = Transient { placements: &placements, moving: None, engaged: &engaged };
@@ -47,18 +60,23 @@ impl<'a> Checker<'a> {
         Ok(self.judge.rest(action, sample))
     }
 
-    /// Checks a move from a state on a fixed grid of phases, and at those claimed.
+    /// Checks a move from a state on a fixed grid of phases, and at those claimed: whether it has a margin, by bounds,
+    /// where that is enough; else its values.
     pub fn transit(
         &mut self,
         action: usize,
         before: &Configuration,
         path: &Path,
         claimed: &[f64],
+        bound: Option<f64>,
     ) -> Result<Found<FaceConnection>, Refusal> {
         self.collide(action, before, path);
+        let phases = phases(path.steps, claimed);
+        if let Some(samples) = bound.and_then(|least| self.bounds.of_move(before, path, &phases, least)) {
+            return Ok(self.judge.transit(action, samples));
+        }
         let placements: Vec<Placement> = before.modules.iter().map(|module| module.placement).collect();
         let start = before.pose(path.module);
-        let phases = phases(path.steps, claimed);
         let samples = phases.par_iter().map(|&phase| {
             let moving = Moving { module: path.module, pose: path.motion.pose(&start, phase) };
             let state = Transient { placements: &placements, moving: Some(moving), engaged: &path.engaged };

@@ -1,7 +1,7 @@
 //! What a plane keeps of a group of variables, or of two that are each other's image.
 
+use super::super::groups::Cone;
 use super::super::parts::Part;
-use super::super::program::Cone;
 use super::mirror::{End, Ends, Mirror, Parity, SAME, Six, columns, combine, size};
 
 /// What the plane keeps of a group, or of two: columns in space, their number, and where the

@@ -6,8 +6,9 @@ use clarabel::solver::{DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
 use super::super::blocks::{Block, Link};
 use super::super::conic::{Attempt, settings};
 use super::super::distribution::compressed;
+use super::super::groups::{Cone, Form, Group};
 use super::super::loads::BodyLoad;
-use super::super::program::{Cone, Form, Group, Program, Purpose};
+use super::super::program::{Program, Purpose};
 use super::super::structure::Structure;
 use super::SelfStress;
 

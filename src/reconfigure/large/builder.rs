@@ -1,0 +1,304 @@
+//! One attempt: carries one module after another to where it is wanted, at one margin.
+//!
+//! Knows which module goes where next; does not know which margins are worth trying.
+
+use std::collections::{BTreeMap, BTreeSet, HashSet};
+
+use crate::reconfigure::assembly::Engagement;
+use crate::reconfigure::course::engagement;
+use crate::reconfigure::domain::Domain;
+use crate::reconfigure::hanging::{Reach, Rest, Rests};
+use crate::reconfigure::layout::{Layout, Placed};
+use crate::reconfigure::moves::Move;
+use crate::robot::{Cell, Occupancy, Placement};
+
+use super::shape::{Targets, bounds, distances, is_connected, lot, open, surplus, vacant};
+use super::walk::{Walk, reaches};
+use super::ways::Ways;
+
+/// Cells around start and goal that modules may pass through.
+const ROOM: i32 = 4;
+
+/// How often a module looks for another way where the robot does not carry it.
+const DETOURS: usize = 6;
+
+/// Places that are tried for one module before the next one is.
+const PLACES: usize = 3;
+
+/// Carries that bring no more modules home than before, beside three for each that is not, before it counts as a dead end.
+const IDLE: usize = 12;
+
+/// Carries per module, in all, after which an attempt gives up.
+const CARRIES: usize = 8;
+
+/// One module carried from one cell to another.
+#[derive(Clone, Debug)]
+pub struct Carry {
+    /// Its moves.
+    pub path: Vec<Move>,
+    /// What the others carry meanwhile is proved to leave this margin.
+    pub margin: f64,
+}
+
+/// What a caller hears of an attempt: how many modules are not yet in place; says whether to go on.
+pub type Watch<'w> = dyn FnMut(usize) -> bool + 'w;
+
+/// How an attempt ended.
+#[derive(Clone, Debug)]
+pub enum Attempt {
+    /// The goal's cells are filled.
+    Done(Vec<Carry>),
+    /// Nothing that was tried leads on.
+    Stuck,
+    /// The caller stopped it.
+    Stopped,
+}
+
+/// A robot on its way to the goal.
+pub struct Builder<'a> {
+    domain: &'a Domain<'a>,
+    targets: &'a Targets,
+    /// Margin that is asked of every state.
+    floor: f64,
+    seed: u64,
+    bounds: [Cell; 2],
+    layout: Layout,
+    /// Where each module of the start is.
+    placements: Vec<Placement>,
+    carries: Vec<Carry>,
+    /// Layouts and placements before each carry.
+    before: Vec<(Layout, Vec<Placement>)>,
+    /// Empty cells of the goal that are open to the outside, and must stay so until they are filled.
+    open: BTreeSet<Cell>,
+    /// No layout is met twice.
+    met: HashSet<Layout>,
+    /// Dead ends that are still put up with.
+    patience: usize,
+}
+
+impl<'a> Builder<'a> {
+    /// At the start of a problem, to give up at dead end number `patience + 1`.
+    pub fn new(domain: &'a Domain<'a>, targets: &'a Targets, floor: f64, seed: u64, patience: usize) -> Self {
+        let problem = domain.problem;
+        let layout = problem.start_layout().clone();
+        let cells = layout.placed().iter().map(|placed| placed.cell).chain(targets.keys().copied());
+        Self {
+            domain,
+            targets,
+            floor,
+            seed,
+            bounds: bounds(cells, ROOM),
+            placements: problem.start().modules.iter().map(|module| module.placement).collect(),
+            carries: Vec::new(),
+            before: Vec::new(),
+            open: BTreeSet::new(),
+            met: HashSet::from([layout.clone()]),
+            patience,
+            layout,
+        }
+    }
+
+    /// Carries modules until all are in place.
+    ///
+    /// On a dead end the last carry is undone, on the next one the last two, and so on; as no layout is
+    /// met twice, other carries follow.
+    pub fn run(mut self, ways: &mut Ways<'a>, rests: &mut Rests<'a>, watch: &mut Watch) -> Attempt {
+        let modules = self.layout.placed().len();
+        let (mut undo, mut fewest, mut idle) = (1, usize::MAX, 0);
+        for _ in 0..CARRIES * modules.max(1) {
+            let left = surplus(&self.layout, self.targets);
+            if left.is_empty() {
+                return Attempt::Done(self.carries);
+            }
+            if !watch(left.len()) {
+                return Attempt::Stopped;
+            }
+            idle = if left.len() < fewest { 0 } else { idle + 1 };
+            fewest = fewest.min(left.len());
+            // To wander about without bringing more modules home is a dead end as well.
+            if idle <= IDLE + 3 * fewest && self.carry_one(&left, ways, rests) {
+                continue;
+            }
+            idle = 0;
+            if self.carries.is_empty() || self.patience == 0 {
+                return Attempt::Stuck;
+            }
+            self.patience -= 1;
+            for _ in 0..undo {
+                if let (Some(_), Some((layout, placements))) = (self.carries.pop(), self.before.pop()) {
+                    (self.layout, self.placements) = (layout, placements);
+                }
+            }
+            undo = (undo * 2).min(modules);
+        }
+        Attempt::Stuck
+    }
+
+    /// Carries one module on: to where one is wanted if that can be; else out of the way of others; else
+    /// closer to where modules are wanted.
+    fn carry_one(&mut self, left: &[Placed], ways: &mut Ways<'a>, rests: &mut Rests<'a>) -> bool {
+        let vacant = vacant(&self.layout, self.targets);
+        self.open = open(&self.layout, &vacant.keys().copied().collect());
+        let is_at_home = |placed: &Placed| self.targets.get(&placed.cell) == Some(&placed.class);
+        let mut covers: Vec<Placed> = self.layout.placed().iter().copied().filter(is_at_home).collect();
+        let home: Vec<Cell> = covers.iter().map(|placed| placed.cell).collect();
+        let to_fill = self.filling_order(&home, &vacant);
+        let movers = self.freeing_order(&home, left.iter().copied());
+        if movers.iter().any(|&mover| self.carry(mover, &to_fill, ways, rests)) {
+            return true;
+        }
+        // What is buried, or closed off, comes free by what is nearest to it.
+        let buried = left.iter().map(|placed| placed.cell).chain(vacant.keys().copied());
+        let nearest = distances(buried, |cell| self.layout.is_filled(cell));
+        covers.sort_by_key(|placed| {
+            (nearest.get(&placed.cell).copied().unwrap_or(u32::MAX), lot(self.seed, placed.cell))
+        });
+        if covers.iter().any(|&cover| self.carry(cover, &to_fill, ways, rests)) {
+            return true;
+        }
+        let closer = self.closer(&vacant);
+        movers.iter().any(|&mover| self.carry(mover, &closer, ways, rests))
+            || covers.iter().any(|&cover| self.carry(cover, &closer, ways, rests))
+    }
+
+    /// Empty cells of the goal with how early they should be filled: outwards from what is in place.
+    fn filling_order(&self, home: &[Cell], vacant: &BTreeMap<Cell, u16>) -> BTreeMap<Cell, (u32, i32, u64)> {
+        let from_home = distances(home.iter().copied(), |cell| self.targets.contains_key(&cell));
+        let rank = |cell: Cell| {
+            let steps = from_home.get(&cell).copied().unwrap_or(u32::MAX);
+            (steps, cell[2], lot(self.seed, cell))
+        };
+        vacant.keys().map(|&cell| (cell, rank(cell))).collect()
+    }
+
+    /// Modules that can move at all, those that are farthest from what is in place first.
+    fn freeing_order(&self, home: &[Cell], movers: impl Iterator<Item = Placed>) -> Vec<Placed> {
+        let from_home = distances(home.iter().copied(), |cell| self.layout.is_filled(cell));
+        let steps = |cell: Cell| from_home.get(&cell).copied().unwrap_or(u32::MAX);
+        let mut movers: Vec<Placed> = movers.collect();
+        movers.sort_by_key(|placed| {
+            (std::cmp::Reverse((steps(placed.cell), placed.cell[2])), lot(self.seed, placed.cell))
+        });
+        movers
+    }
+
+    /// All cells around by how close they are to the empty cells of the goal.
+    fn closer(&self, vacant: &BTreeMap<Cell, u16>) -> BTreeMap<Cell, (u32, i32, u64)> {
+        let [low, high] = self.bounds;
+        let within = |cell: Cell| (0..3).all(|i| low[i] <= cell[i] && cell[i] <= high[i]);
+        let steps = distances(vacant.keys().copied(), within);
+        steps.into_iter().map(|(cell, steps)| (cell, (steps, cell[2], lot(self.seed, cell)))).collect()
+    }
+
+    /// Carries a module to the first of the ranked cells that it can be carried to, if that is better than
+    /// where it is; `false` if there is none.
+    fn carry(
+        &mut self,
+        mover: Placed,
+        ranked: &BTreeMap<Cell, (u32, i32, u64)>,
+        ways: &mut Ways<'a>,
+        rests: &mut Rests<'a>,
+    ) -> bool {
+        let class = self.domain.problem.class(mover.class);
+        if class.fixed || !class.loads.is_empty() || class.turns {
+            return false;
+        }
+        let rest = Layout::new(self.layout.placed().iter().copied().filter(|p| p.cell != mover.cell).collect());
+        if self.domain.moves_of(&rest, &mover).is_empty()
+            || (self.domain.problem.must_stay_connected() && !is_connected(&rest))
+        {
+            return false;
+        }
+        let mut shunned = BTreeSet::new();
+        let mut others: Option<Rest> = None;
+        let mut places = 0;
+        let mut refused = BTreeSet::new();
+        for _ in 0..DETOURS {
+            let walk = Walk::new(self.domain, ways, (&rest, mover), self.floor, &shunned, self.bounds);
+            let reached = walk.reached[1..].iter().copied().filter(|cell| !refused.contains(cell));
+            let mut reached: Vec<Cell> = reached.filter(|cell| ranked.contains_key(cell)).collect();
+            reached.sort_by_key(|cell| ranked[cell]);
+            let Some(to) = reached.into_iter().find(|&cell| self.suits(mover, cell, ranked, &rest)) else {
+                return false;
+            };
+            let path = walk.path(to);
+            let pitch = self.domain.problem.start().pitch();
+            let reaches = reaches(ways, &rest, mover.class, &path, pitch);
+            match self.too_weak(mover, &rest, &mut others, &reaches, rests) {
+                Ok(margin) => {
+                    self.take(mover, to, path, margin);
+                    return true;
+                }
+                Err(support) => {
+                    shunned.insert(support);
+                    places += 1;
+                    if places % PLACES == 0 {
+                        refused.insert(to);
+                    }
+                }
+            }
+        }
+        false
+    }
+
+    /// Whether a module may be put into a cell.
+    fn suits(&self, mover: Placed, cell: Cell, ranked: &BTreeMap<Cell, (u32, i32, u64)>, rest: &Layout) -> bool {
+        let Some(rank) = ranked.get(&cell) else { return false };
+        let is_wanted = self.targets.get(&cell) == Some(&mover.class);
+        // Where nothing is wanted, only steps ahead count.
+        let is_closer = ranked.get(&mover.cell).is_none_or(|own| rank.0 < own.0);
+        if self.targets.get(&cell).is_some_and(|class| *class != mover.class) || !(is_wanted || is_closer) {
+            return false;
+        }
+        let mut placed = rest.placed().to_vec();
+        placed.push(Placed { cell, ..mover });
+        let after = Layout::new(placed);
+        let wanted: BTreeSet<Cell> = self.open.iter().copied().filter(|&open| open != cell).collect();
+        !self.met.contains(&after) && open(&after, &wanted) == wanted
+    }
+
+    /// The margin that the others are proved to keep on a walk, or the first module that they do not carry the weight on.
+    fn too_weak(
+        &self,
+        mover: Placed,
+        rest: &Layout,
+        others: &mut Option<Rest>,
+        reaches: &BTreeMap<Cell, Reach>,
+        rests: &mut Rests<'a>,
+    ) -> Result<f64, Cell> {
+        if !self.domain.stability {
+            return Ok(f64::INFINITY);
+        }
+        let occupancy = Occupancy::of_placements(&self.placements);
+        let module = occupancy.at(mover.cell).expect("a mover is a module");
+        let others = others.get_or_insert_with(|| {
+            let engaged: Vec<Engagement> =
+                rest.touching().into_iter().filter_map(|bond| engagement(&occupancy, bond)).collect();
+            rests.without(module, &self.placements, &engaged)
+        });
+        let level = 1.0 - self.floor;
+        let mut most: f64 = 0.0;
+        for (&cell, &reach) in reaches {
+            let support = occupancy.at(cell).expect("what holds a module is there");
+            let found = rests.utilisation(others, support, reach, level);
+            if !(found <= level) {
+                return Err(cell);
+            }
+            most = most.max(found);
+        }
+        Ok(1.0 - most)
+    }
+
+    fn take(&mut self, mover: Placed, to: Cell, path: Vec<Move>, margin: f64) {
+        self.before.push((self.layout.clone(), self.placements.clone()));
+        self.layout = self.layout.with_moved(mover.cell, Placed { cell: to, ..mover });
+        let moved = self.placements.iter_mut().find(|placement| placement.cell == mover.cell);
+        if let Some(placement) = moved {
+            placement.cell = to;
+            let turned = path.iter().fold(placement.orientation, |turned, step| turned.turned(step.rotation()));
+            placement.orientation = turned;
+        }
+        self.met.insert(self.layout.clone());
+        self.carries.push(Carry { path, margin });
+    }
+}

@@ -1,0 +1,142 @@
+//! Plans for robots of hundreds of modules, far beyond exact search: one module after another leaves where it is
+//! not wanted, walks over the others, and stays where one is wanted.
+//!
+//! - `shape` says which modules are where none is wanted, in which order to free and to fill cells, and
+//!   which cells must stay open to the outside;
+//! - `walk` finds where one module can get to, by moves whose own margins (`ways`) are large enough;
+//! - `builder` chooses the module and its place, asks whether the others carry the walk
+//!   ([`hanging`](super::hanging)), uncovers what is buried, and undoes carries on dead ends;
+//! - `levels` says which margins to try for, the largest first;
+//! - `script` turns carries into a plan with what was proved of every action.
+//!
+//! Every transient state of the plan is proved to have the margin that the plan claims. Nothing is proved about
+//! other plans but what start and goal alone say. Modules that carry loads of their own stay where they are.
+
+mod builder;
+mod levels;
+mod script;
+mod shape;
+mod walk;
+mod ways;
+
+use std::sync::atomic::Ordering;
+use std::time::Instant;
+
+use planners::Limit;
+
+use super::domain::Domain;
+use super::hanging::Rests;
+use super::options::{Event, Known, News, Options, Pass};
+use super::plan::{Outcome, Plan, Proof, Report, Statistics};
+use crate::statics::Bracket;
+use builder::{Attempt, Builder};
+use levels::Levels;
+pub use script::Ends;
+use script::write;
+use shape::Targets;
+use ways::Ways;
+
+/// Most modules for which all is searched unless asked otherwise.
+pub const EXACT_MODULES: usize = 12;
+
+/// Attempts at the required margin, each with another seed. At larger ones there is one.
+const ATTEMPTS: u64 = 3;
+
+/// Dead ends that are put up with in an attempt at a larger margin than is required, and at the required one.
+const PATIENCE: [usize; 2] = [4, 40];
+
+/// Decomposes a problem whose start and goal are known to be connected and stable enough.
+pub fn decompose(
+    domain: &Domain,
+    options: &Options,
+    (required, ends): (Option<f64>, Ends),
+    began: Instant,
+    on_event: &mut dyn FnMut(&Event),
+) -> Report {
+    let problem = domain.problem;
+    let goal = problem.goal().placed_best(problem.start_layout());
+    let targets: Targets = goal.placed().iter().map(|placed| (placed.cell, placed.class)).collect();
+    let mut ways = Ways::new(domain);
+    let mut rests = Rests::new(problem.start());
+    let deadline = options.time_limit.and_then(|limit| began.checked_add(limit));
+    let stopped_by = || {
+        let cancelled = options.cancel.as_ref().is_some_and(|cancel| cancel.load(Ordering::Relaxed));
+        let late = deadline.is_some_and(|deadline| Instant::now() >= deadline);
+        if cancelled { Some(Limit::Cancelled) } else { late.then_some(Limit::Deadline) }
+    };
+    // Every module that is not where the goal wants one moves at least once. In a free frame others might stay.
+    let fewest = if problem.goal().is_free() { 0 } else { shape::surplus(problem.start_layout(), &targets).len() };
+    let fewest = u32::try_from(fewest).unwrap_or(u32::MAX);
+    let mut plan: Option<Plan> = None;
+    let mut stopped = None;
+    let mut statistics = Statistics::default();
+    let mut levels = Levels::new(domain, required, ends.at_most());
+    while let Some(floor) = levels.next(&ways) {
+        let is_required = levels.is_required();
+        let patience = PATIENCE[usize::from(is_required)];
+        let mut is_attained = false;
+        for attempt in 0..if is_required { ATTEMPTS } else { 1 } {
+            let seed = options.seed.wrapping_add(attempt);
+            let mut watch = |left: usize| {
+                statistics.expanded += 1;
+                statistics.states = statistics.states.max((targets.len() - left) as u64);
+                let known = Known {
+                    pass: Pass::Greedy,
+                    margin: plan.as_ref().and_then(|plan| plan.margin).map(|margin| margin.lower),
+                    moves: plan.as_ref().map(|plan| plan.moves),
+                    margin_at_most: ends.at_most(),
+                    moves_at_least: fewest,
+                    statistics: planners::Statistics {
+                        expanded: statistics.expanded,
+                        states: left,
+                        ..planners::Statistics::default()
+                    },
+                    oracle_solves: domain.oracle.solves(),
+                };
+                on_event(&Event { news: News::Progress, known });
+                stopped = stopped_by();
+                stopped.is_none()
+            };
+            match Builder::new(domain, &targets, floor, seed, patience).run(&mut ways, &mut rests, &mut watch) {
+                Attempt::Done(carries) => {
+                    is_attained = true;
+                    let written = write(domain, &mut ways, &carries, &ends);
+                    let is_enough = |margin: Bracket| required.is_none_or(|required| margin.lower >= required);
+                    if written.margin.is_none_or(is_enough) && is_better(&written, plan.as_ref()) {
+                        plan = Some(written);
+                    }
+                }
+                Attempt::Stopped | Attempt::Stuck => {}
+            }
+            if is_attained || stopped.is_some() {
+                break;
+            }
+        }
+        levels.note(is_attained);
+        if stopped.is_some() {
+            break;
+        }
+    }
+    statistics.oracle_solves = rests.solves();
+    Report {
+        outcome: Outcome::OutOfBudget(stopped.unwrap_or(Limit::Incomplete)),
+        objective: options.objective,
+        required,
+        plan,
+        alternatives: Vec::new(),
+        alternatives_cut_by: None,
+        proof: Proof {
+            optimal: false,
+            margin_at_most: ends.at_most(),
+            moves_at_least: u32::try_from(fewest).unwrap_or(u32::MAX),
+        },
+        statistics,
+        in_the_way: None,
+    }
+}
+
+/// Whether a plan has a larger margin than the best so far, or none and fewer moves.
+fn is_better(plan: &Plan, best: Option<&Plan>) -> bool {
+    let margin = |plan: &Plan| plan.margin.map_or(f64::NEG_INFINITY, |margin| margin.lower);
+    best.is_none_or(|best| margin(plan) > margin(best) || margin(plan) == margin(best) && plan.moves < best.moves)
+}

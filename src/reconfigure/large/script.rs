@@ -1,0 +1,120 @@
+//! From carries to a plan, with what was proved of every action.
+
+use crate::reconfigure::compose::{expand, ports};
+use crate::reconfigure::domain::Domain;
+use crate::reconfigure::layout::{Layout, displaced};
+use crate::reconfigure::moves::Move;
+use crate::reconfigure::oracle::{Seam, Worst};
+use crate::reconfigure::plan::{Bottleneck, Plan, PlannedAction};
+use crate::reconfigure::saturated;
+use crate::reconfigure::step::Step;
+use crate::robot::{Cell, Configuration, Face};
+use crate::statics::Bracket;
+
+use super::builder::Carry;
+use super::ways::Ways;
+
+/// Margins of the start and of the goal as it is written, where they are known.
+#[derive(Clone, Copy, Debug)]
+pub struct Ends {
+    /// Of the start.
+    pub start: Option<Worst>,
+    /// Of the goal.
+    pub goal: Option<Worst>,
+}
+
+impl Ends {
+    /// No plan has a larger margin.
+    pub fn at_most(&self) -> f64 {
+        let uppers = [self.start, self.goal].into_iter().flatten().map(|worst| worst.margin.upper);
+        uppers.fold(f64::INFINITY, f64::min)
+    }
+}
+
+/// What is known of a move and the states at rest before and after it.
+struct Proved {
+    margin: Bracket,
+    phase: f64,
+    /// The cell of the module that holds the moving one, where that decides.
+    weakest: Option<Cell>,
+}
+
+/// The plan that carries these modules and then releases what the goal does not connect.
+pub fn write(domain: &Domain, ways: &mut Ways, carries: &[Carry], ends: &Ends) -> Plan {
+    let problem = domain.problem;
+    let mut layout = problem.start_layout().clone();
+    let mut path = Vec::new();
+    let mut proved = Vec::new();
+    for carry in carries {
+        for &step in &carry.path {
+            proved.push(prove(domain, ways, &layout, step, carry.margin));
+            path.push(saturated::Action::Move(step));
+            layout = step.applied(&layout, false);
+        }
+    }
+    let arrival = problem.goal().arrival(&layout);
+    path.extend(arrival.map(saturated::Action::Finish));
+    let arrived = arrival.filter(|_| domain.stability).map(|arrival| {
+        let elsewhere = || domain.of_state(&layout, &problem.goal().bonds(arrival));
+        ends.goal.unwrap_or_else(elsewhere).margin.lower
+    });
+    let at_the_end = arrived.unwrap_or(f64::NEG_INFINITY);
+
+    let mut configuration = problem.start().clone();
+    let start = ends.start.filter(|_| domain.stability).map(|worst| worst.margin);
+    let bottleneck = start.map(|_| Bottleneck {
+        action: None,
+        phase: 1.0,
+        connection: ends.start.and_then(|worst| worst.weakest).and_then(|seam| ports(&configuration, seam)),
+    });
+    let mut plan =
+        Plan { margin: start, moves: 0, bottleneck, actions: Vec::new(), profile: Vec::new(), if_stronger: None };
+    let mut before = start.map_or(f64::NEG_INFINITY, |margin| margin.lower);
+    for step in expand(problem, &path) {
+        let action = step.action(&configuration).expect("a path takes steps that its states have");
+        let (margin, phase, weakest) = match step {
+            Step::Move(_) => {
+                let Proved { margin, phase, weakest } = &proved[plan.moves as usize];
+                before = margin.lower;
+                plan.moves += 1;
+                (*margin, *phase, *weakest)
+            }
+            // Between two moves every state has all connections of one of the two ends.
+            Step::Attach(_) | Step::Detach(_) => {
+                let after = proved.get(plan.moves as usize).map_or(at_the_end, |next| next.margin.lower);
+                (Bracket::new(before.min(after), 1.0), 1.0, None)
+            }
+        };
+        if let Some(so_far) = plan.margin {
+            if margin.lower < so_far.lower {
+                let connection = weakest.and_then(|holder| held(&configuration, step, holder));
+                plan.bottleneck = Some(Bottleneck { action: Some(plan.actions.len()), phase, connection });
+            }
+            plan.margin = Some(so_far.min(margin));
+        }
+        step.apply(&mut configuration);
+        let known = plan.margin.is_some();
+        plan.actions.push(PlannedAction { action, margin: known.then_some(margin), phase: known.then_some(phase) });
+    }
+    plan
+}
+
+/// What is known of a move out of a layout with all else connected; `carried` is the margin of the others.
+fn prove(domain: &Domain, ways: &mut Ways, layout: &Layout, step: Move, carried: f64) -> Proved {
+    let unknown = Proved { margin: Bracket::new(carried, 1.0), phase: 1.0, weakest: None };
+    if !domain.stability {
+        return unknown;
+    }
+    let mover = layout.placed()[layout.at(step.from).expect("a move has a module")];
+    let rest = Layout::new(layout.placed().iter().copied().filter(|placed| placed.cell != step.from).collect());
+    let Some(way) = ways.of(&rest, mover.class, step) else { return unknown };
+    let weakest = (way.margin.lower <= carried).then(|| displaced(way.weakest, step.from));
+    Proved { margin: Bracket::new(way.margin.lower.min(carried), 1.0), phase: way.phase, weakest }
+}
+
+/// The faces by which `holder` holds the module that moves.
+fn held(configuration: &Configuration, step: Step, holder: Cell) -> Option<crate::robot::FaceConnection> {
+    let Step::Move(step) = step else { return None };
+    let towards = Face::from_step(std::array::from_fn(|i| step.from[i] - holder[i]))?;
+    ports(configuration, Seam { cells: [holder, step.from], towards })
+}
