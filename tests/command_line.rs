@@ -467,6 +467,60 @@ fn a_motion_range_is_a_table_and_a_picture() {
     }
 }
 
+const TOWER: [&str; 2] = ["cubes/tower_to_bridge/start.json", "cubes/tower_to_bridge/goal.json"];
+
+#[test]
+fn plans_are_ranked_profiled_and_bounded() {
+    let directory = std::env::temp_dir().join(format!("steadfast-ranking-{}", std::process::id()));
+    std::fs::create_dir_all(&directory).unwrap();
+    let file = |name: &str| directory.join(name).display().to_string();
+    let run = |more: &[&str]| plan(&[&TOWER[..], more].concat());
+
+    let front = run(&["--objective", "pareto", "--json"]);
+    assert_eq!(front.status.code(), Some(0));
+    let front: serde_json::Value = serde_json::from_str(&stdout(&front)).unwrap();
+    assert_eq!((&front["objective"], &front["proof"]["optimal"]), (&"pareto".into(), &true.into()));
+
+    let (csv, out) = (file("profile.csv"), file("plan.json"));
+    let ranked = stdout(&run(&["--plans", "2", "--profile", &csv, "--out", &out]));
+    assert!(ranked.contains("alternative 1: ") && ranked.contains("times as strong, it would give"), "{ranked}");
+    let table = std::fs::read_to_string(&csv).unwrap();
+    let document: serde_json::Value = serde_json::from_str(&std::fs::read_to_string(&out).unwrap()).unwrap();
+    assert_eq!(table.lines().count(), document["profile"].as_array().unwrap().len() + 1);
+    assert_eq!(plan(&["verify", &out]).status.code(), Some(0), "all of its plans verify");
+    run(&["--profile", &file("profile.svg")]);
+    assert!(std::fs::read_to_string(directory.join("profile.svg")).unwrap().starts_with("<svg"));
+
+    let small = run(&["--memory-limit", "1K"]);
+    assert_eq!(small.status.code(), Some(11));
+    assert!(stdout(&small).contains("stopped at the memory limit"));
+    std::fs::remove_dir_all(directory).unwrap();
+}
+
+#[test]
+fn what_is_in_the_way_is_told() {
+    let demanding = [&TOWER[..], &["--min-margin", "0.7"]].concat();
+    let output = plan(&demanding);
+    assert_eq!(output.status.code(), Some(10));
+    let report = stdout(&output);
+    // The largest margin is 0.5040: 0.4960 of the strength is used where 0.3 may be.
+    assert!(report.contains("with a required margin of 0.5040 there is a plan, of 5 moves"), "{report}");
+    assert!(report.contains("1.653") && report.contains("too weak for it: connection b:-z - c:-z"), "{report}");
+    let json = stdout(&plan(&[&demanding[..], &["--json"]].concat()));
+    let document: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert!(document["in_the_way"]["strength_factor"]["upper"].as_f64().unwrap() > 1.65);
+}
+
+#[test]
+fn sizes_and_profiles_that_are_none_are_refused() {
+    for (option, value) in
+        [("--memory-limit", "much"), ("--memory-limit", "-1G"), ("--memory-limit", "0"), ("--profile", "plan.txt")]
+    {
+        let output = plan(&[&TOWER[..], &[&format!("{option}={value}")]].concat());
+        assert_eq!(output.status.code(), Some(2), "{option} {value}");
+    }
+}
+
 #[test]
 fn what_may_run_at_the_same_time_is_told_drawn_and_written() {
     let directory = tempfile::tempdir().unwrap();

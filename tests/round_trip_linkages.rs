@@ -15,7 +15,8 @@ use steadfast::io::{
 use steadfast::reconfigure::linkage::assembly::Held;
 use steadfast::reconfigure::linkage::{Action, Half};
 use steadfast::reconfigure::{
-    Bottleneck, Impossible, Objective, Outcome, Plan, PlannedAction, Proof, Report, Statistics, Which,
+    Bottleneck, IfStronger, Impossible, InTheWay, Limit, Moment, Objective, Outcome, Plan, PlannedAction, Proof,
+    Report, Statistics, Which,
 };
 use steadfast::robot::linkage::{Code, Connection, Goal, Linkage, Module, Port, Spot};
 use steadfast::robot::{
@@ -199,6 +200,14 @@ prop_compose! {
         let margin = margin.map(|(lower, upper)| Bracket::new(lower, upper));
         let mut plans = ways.iter().map(|drafts| plan(&start, drafts, margin));
         let first = plans.next();
+        let in_the_way = first.is_none().then(|| InTheWay {
+            margin: margin.unwrap_or(Bracket::exact(f64::NEG_INFINITY)),
+            strength_factor: Bracket::new(1.5, if labelled { f64::INFINITY } else { 2.5 }),
+            plan: (!labelled).then(|| plan(&start, &[], margin)),
+            too_weak: start.connections.iter().map(|&held| (Held::Ports(held), Bracket::new(-2.0, -1.0))).collect(),
+            never_move: labelled.then(|| (0..start.modules.len()).rev().collect()),
+            cut_by: labelled.then_some(Limit::Memory),
+        });
         let weakest = start.connections.first().map(|&connection| Held::Ports(connection));
         let reason = Impossible::Unstable {
             which: Which::Goal, margin: Bracket::exact(f64::NEG_INFINITY), required: 0.5, connection: weakest,
@@ -214,6 +223,7 @@ prop_compose! {
             plan: first,
             alternatives: plans.collect(),
             alternatives_cut_by: None,
+            in_the_way,
             proof: Proof { optimal: false, margin_at_most: unproved.0, moves_at_least: unproved.1 },
             statistics: Statistics::default(),
         };

@@ -12,8 +12,8 @@ use steadfast::io::{
     write_configuration, write_plan,
 };
 use steadfast::reconfigure::{
-    Action, Bottleneck, Impossible, Limit, Objective, Outcome, Plan, PlannedAction, Proof, Report, Statistics, Turn,
-    Which,
+    Action, Bottleneck, IfStronger, Impossible, Limit, Moment, Objective, Outcome, Plan, PlannedAction, Proof, Report,
+    Statistics, Turn, Which,
 };
 use steadfast::robot::{
     Catalogue, Cell, Configuration, Environment, Face, FaceConnection, Goal, Ground, HeightField, Hull, Matching, Mesh,
@@ -250,8 +250,9 @@ fn plan(start: &Configuration, sketch: &Sketch, number: usize) -> (Plan, Vec<Con
     }
     let held = sketch.held.map(|(module, a, b)| connection([module.index(cells.len()); 2], [a, b]));
     let bottleneck = sketch.bottleneck.map(|(action, phase)| Bottleneck { action, phase, connection: held });
-    let (profile, if_stronger) =
-        (profile(sketch.margin), sketch.margin.map(|margin| IfStronger { factor: 2.0, margin }));
+    let moment = |margin| Moment { action: Some(actions.len()), phase: 0.25, margin };
+    let profile = sketch.margin.map(moment).into_iter().collect();
+    let if_stronger = sketch.margin.map(|margin| IfStronger { factor: 2.0, margin });
     (Plan { margin: sketch.margin, moves: sketch.moves, bottleneck, actions, profile, if_stronger }, contradictions)
 }
 
@@ -293,7 +294,8 @@ fn outcomes() -> impl Strategy<Value = Outcome> {
 prop_compose! {
     fn statistics()(counts: [u64; 6], seconds in number()) -> Statistics {
         let [expanded, states, generated, certified, oracle_solves, bytes] = counts;
-        Statistics { expanded, states, generated, certified, oracle_solves, bytes, seconds: seconds.abs() }
+        let seconds = seconds.abs();
+        Statistics { expanded, states, generated, certified, oracle_solves, bytes, seconds, ..Statistics::default() }
     }
 }
 
@@ -337,11 +339,12 @@ prop_compose! {
             problem: LatticeProblem { start, goal },
             report: Report {
                 outcome,
-                objective: if by_moves { Objective::Moves } else { Objective::Margin },
+                objective: if by_moves { Objective::Moves } else { Objective::Pareto },
                 required,
                 plan: plans.next(),
                 alternatives: plans.collect(),
                 alternatives_cut_by: cut_by,
+                in_the_way: None,
                 proof: Proof {
                     optimal,
                     margin_at_most: bounds.0.unwrap_or(unproved.0),

@@ -205,7 +205,7 @@ fn a_suite_runs_and_goes_on_after_interruptions_to_the_same_results() {
     }
     let report = fs::read_to_string(whole.join("report.md")).unwrap();
     assert!(report.contains("9 of 9 jobs finished"), "{report}");
-    for figure in ["first_plan", "answered", "error", "growth"] {
+    for figure in ["first_plan", "answered", "error", "gap", "growth"] {
         let svg = fs::read_to_string(whole.join(format!("{figure}.svg"))).unwrap();
         assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"), "{figure}");
     }

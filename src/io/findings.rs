@@ -63,7 +63,7 @@ impl Findings {
     pub(super) fn open_tables<'a>(&mut self, file: &'a SourceFile) -> Option<Document<'a>> {
         let (name, text) = self.text(file)?;
         let (root, faults) = tables::parse(text);
-        self.faults(name, text, faults, 0);
+        self.faults(name, text, faults);
         Some(Document { name, text, root: root?, form: Form::Tables })
     }
 
@@ -74,19 +74,19 @@ impl Findings {
         let mut documents = Vec::new();
         let mut from = 0;
         for line in text.split_inclusive('\n').filter(|line| line.ends_with('\n')) {
-            let (root, faults) = json::parse(line);
-            self.faults(name, text, faults, from);
-            let document = |root: Node| Document { name, text, root: root.moved_by(from), form: Form::Own };
-            documents.extend(root.map(document));
-            from += line.len();
+            let to = from + line.len() - 1;
+            let (root, faults) = json::parse_from(&text[..to], from);
+            self.faults(name, text, faults);
+            documents.extend(root.map(|root| Document { name, text, root, form: Form::Own }));
+            from = to + 1;
         }
         Some(documents)
     }
 
-    /// Adds what a parser found, in a part of a text that begins after so many bytes.
-    fn faults(&mut self, name: &str, text: &str, faults: Vec<Fault>, after: usize) {
+    /// Adds what a parser found.
+    fn faults(&mut self, name: &str, text: &str, faults: Vec<Fault>) {
         for Fault { span, code, message, hint } in faults {
-            self.push(name, text, span.moved_by(after), code, String::new(), message, hint);
+            self.push(name, text, span, code, String::new(), message, hint);
         }
     }
 
@@ -117,7 +117,7 @@ impl Findings {
 
     fn json<'a>(&mut self, name: &'a str, text: &'a str) -> Option<Document<'a>> {
         let (root, faults) = json::parse(text);
-        self.faults(name, text, faults, 0);
+        self.faults(name, text, faults);
         Some(Document { name, text, root: root?, form: Form::Own })
     }
 

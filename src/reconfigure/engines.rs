@@ -42,6 +42,9 @@ pub trait Translation<S: Space> {
     fn plan(&self, path: &[S::Action]) -> Plan<Self::Action, Self::Connection>;
 }
 
+/// Which modules are where they were at the start in all of some states, where that can be told.
+pub type Unmoved<'u, S> = &'u dyn Fn(&[&<S as Space>::State]) -> Option<Vec<usize>>;
+
 /// What a translation's searches tell.
 pub type EventOf<T, S> = Event<<T as Translation<S>>::Action, <T as Translation<S>>::Connection>;
 
@@ -143,7 +146,7 @@ impl Task<'_> {
         space: &S,
         translation: &T,
         report: &ReportOf<T, S>,
-        unmoved: &dyn Fn(&[&S::State]) -> Option<Vec<usize>>,
+        unmoved: Unmoved<'_, S>,
     ) -> Option<InTheWay<T::Action, T::Connection>>
     where
         T::Connection: Copy + PartialEq,

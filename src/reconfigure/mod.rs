@@ -10,6 +10,7 @@ pub mod assembly;
 mod assembly_laws;
 #[cfg(test)]
 mod assembly_tests;
+mod baseline;
 mod compose;
 mod course;
 mod decides;
@@ -48,6 +49,7 @@ mod worst;
 
 pub use crate::robot::{Motion, Turn};
 pub use action::Action;
+pub use baseline::Baseline;
 pub use engines::MARGIN_TOLERANCE;
 pub use in_the_way::InTheWay;
 pub use layout::{Bond, Layout, Placed};

@@ -9,6 +9,7 @@ pub use planners::Pass;
 use crate::robot::FaceConnection;
 
 use super::action::Action;
+use super::baseline::Baseline;
 use super::plan::{Objective, Plan};
 
 /// Which transitions a search goes by.
@@ -65,6 +66,8 @@ pub struct Options {
     pub ignore_stability: bool,
     /// What the search goes by.
     pub reduction: Reduction,
+    /// A poorer search to compare with, of the saturated space.
+    pub baseline: Option<Baseline>,
     /// How plans are looked for.
     pub method: Method,
     /// Seed of a decomposition's choices among equals; the exact search draws no random numbers.

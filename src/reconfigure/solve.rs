@@ -9,6 +9,7 @@ use crate::robot::{Configuration, FaceConnection, Goal};
 use crate::statics::Bracket;
 
 use super::action::Action;
+use super::baseline::{Baseline, Blind, Eager};
 use super::compose::{compose, expand, ports};
 use super::domain::{Domain, width};
 use super::engines::{Task, Translation};
@@ -69,9 +70,16 @@ pub fn solve(
                 let steps = |path: &[saturated::Action]| expand(&problem, path);
                 let plans = Plans { domain: &domain, steps };
                 // Where it is known what the goal looks like, the search comes from there as well.
-                match space.goals().is_empty() {
-                    true => task.run(&space, &plans, on_event),
-                    false => task.run_with(&space, &plans, &|search, floor| search.from_both_ends(floor), on_event),
+                match options.baseline {
+                    None if space.goals().is_empty() => task.run(&space, &plans, on_event),
+                    None => task.run_with(&space, &plans, &|search, floor| search.from_both_ends(floor), on_event),
+                    Some(Baseline::Blind) => task.run(&Blind(&space), &plans, on_event),
+                    Some(Baseline::Eager) => {
+                        let steps = |path: &[(saturated::Action, [f64; 2])]| {
+                            expand(&problem, &path.iter().map(|(action, _)| *action).collect::<Vec<_>>())
+                        };
+                        task.run(&Eager(&space), &Plans { domain: &domain, steps }, on_event)
+                    }
                 }
             }
             Reduction::Primitive => {

@@ -254,10 +254,19 @@ pub fn solved_over_time(entries: &[Entry<'_>]) -> [Vec<Curve>; 2] {
     [curves(first_plans), curves(answers)]
 }
 
-/// By how much the margin of the best plan so far falls short of the best that is known for the problem, over time:
-/// the median over the problems, where a problem without a plan so far counts as infinitely far. Of jobs whose
-/// objective is the margin. A step's `share` is that median.
-pub fn error_over_time(entries: &[Entry<'_>]) -> Vec<Curve> {
+/// What a plan's margin is compared with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Against {
+    /// The best margin that is known for the problem, of all that its jobs found.
+    BestKnown,
+    /// What was proved by then that no plan exceeds.
+    Proved,
+}
+
+/// By how much the margin of the best plan so far falls short, over time: the median over the problems, where a problem
+/// without a plan so far, or of which nothing is proved so far, counts as infinitely far. Of jobs whose objective
+/// is the margin. A step's `share` is that median.
+pub fn error_over_time(entries: &[Entry<'_>], against: Against) -> Vec<Curve> {
     let mut best: BTreeMap<String, f64> = BTreeMap::new();
     for entry in entries.iter().filter(|entry| entry.record.is_solved() && entry.record.breaks().is_none()) {
         let Some(margin) = entry.record.found.as_ref().and_then(|found| found.margin) else { continue };
@@ -272,7 +281,7 @@ pub fn error_over_time(entries: &[Entry<'_>]) -> Vec<Curve> {
     let of_margin: Vec<Entry<'_>> = of_margin.copied().collect();
     let curve = |((way, modules), group): (_, Vec<Entry<'_>>)| {
         let runs: Vec<Vec<(f64, f64)>> =
-            group.iter().map(|entry| errors(entry.record, best[&entry.job.problem()])).collect();
+            group.iter().map(|entry| errors(entry.record, best[&entry.job.problem()], against)).collect();
         let mut times: Vec<f64> = runs.iter().flatten().map(|(seconds, _)| *seconds).collect();
         times.sort_by(f64::total_cmp);
         times.dedup();
@@ -288,18 +297,27 @@ pub fn error_over_time(entries: &[Entry<'_>]) -> Vec<Curve> {
     by_way(&of_margin, true).into_iter().map(curve).collect()
 }
 
-/// When a run's best plan so far was how far from the best that is known. Only a confirmed last plan vouches for
+/// When a run's best plan so far was how far from what it is compared with. Only a confirmed last plan vouches for
 /// those before it.
-fn errors(record: &Record, best: f64) -> Vec<(f64, f64)> {
+fn errors(record: &Record, best: f64, against: Against) -> Vec<(f64, f64)> {
     if !record.is_solved() {
         return Vec::new();
     }
-    let from_trace = record.trace.iter().filter_map(|point| Some((point.seconds, point.margin?)));
-    let last = record.found.as_ref().and_then(|found| found.margin).map(|margin| (record.seconds, margin.lower));
-    let mut so_far = f64::NEG_INFINITY;
-    let known = from_trace.chain(last).map(|(seconds, margin)| {
-        so_far = so_far.max(margin);
-        (seconds, (best - so_far).max(0.0))
+    let from_trace = record.trace.iter().filter_map(|point| Some((point.seconds, point.margin?, point.margin_at_most)));
+    let last = record.found.as_ref().and_then(|found| found.margin);
+    let last = last.map(|margin| {
+        // Of a plan that is proved to be the best its own margin is the bound, within the tolerance of proofs.
+        let at_most = if record.is_decided() { margin.lower } else { record.margin_at_most };
+        (record.seconds, margin.lower, at_most)
+    });
+    let (mut so_far, mut at_most) = (f64::NEG_INFINITY, f64::INFINITY);
+    let known = from_trace.chain(last).map(|(seconds, margin, bound)| {
+        (so_far, at_most) = (so_far.max(margin), at_most.min(bound));
+        let aim = match against {
+            Against::BestKnown => best,
+            Against::Proved => at_most,
+        };
+        (seconds, (aim - so_far).max(0.0))
     });
     known.collect()
 }

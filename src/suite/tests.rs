@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use super::job::{Job, Planner};
 use super::record::{Ending, Found, Point, Record};
-use super::summary::{self, Entry};
+use super::summary::{self, Against, Entry};
 use super::{AnyPlan, Check, Flaw, Run, Watch, judge, run};
 use crate::generate::{Family, Request};
 use crate::reconfigure::{Limit, Objective};
@@ -138,11 +138,18 @@ fn errors_over_time_are_medians_with_missing_plans_counted_as_infinite() {
         made_up(&jobs[2], 50.0, Some(0.1), &[(50.0, 0.1)]),
     ];
     let entries: Vec<Entry<'_>> = jobs.iter().zip(&records).map(|(job, record)| Entry { job, record }).collect();
-    let curves = summary::error_over_time(&entries);
+    let curves = summary::error_over_time(&entries, Against::BestKnown);
     let steps: Vec<(f64, f64)> = curves[0].steps.iter().map(|step| (step.seconds, step.share)).collect();
     // Until 2 s two of three have no plan. At 2 s errors are 0.3, 0 and infinite; from 3 s on 0, 0 and infinite.
     assert_eq!(steps.len(), 2, "{steps:?}");
     assert!(steps[0].0 == 2.0 && (steps[0].1 - 0.3).abs() < 1e-12 && steps[1] == (3.0, 0.0), "{steps:?}");
+    // Against the bound of 1 while they run, and against themselves once they are proved to be the best: at 2 s 0.8,
+    // 0.6 and infinite; at 3 s 0.5 and 0.6; at 5 s 0 and 0.6; at 6 s 0 and 0.
+    let curves = summary::error_over_time(&entries, Against::Proved);
+    let steps: Vec<(f64, f64)> = curves[0].steps.iter().map(|step| (step.seconds, step.share)).collect();
+    let expected = [(2.0, 0.8), (3.0, 0.6), (6.0, 0.0)];
+    assert_eq!(steps.len(), 3, "{steps:?}");
+    assert!(steps.iter().zip(expected).all(|(a, b)| a.0 == b.0 && (a.1 - b.1).abs() < 1e-12), "{steps:?}");
 }
 
 #[test]

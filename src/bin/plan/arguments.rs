@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use crate::{bench, generate};
 use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
+use steadfast::robot::Region;
 
-use crate::restrictions::Restrictions;
+use crate::{bench, generate};
 
 /// Reconfiguration planner for modular robots in which every transient state is proved stable
 #[derive(Debug, Parser)]
@@ -76,8 +76,17 @@ pub struct PlanningArguments {
     /// How to look for plans of lattice robots
     #[arg(long, value_enum, default_value_t = PlannerArgument::Auto)]
     pub planner: PlannerArgument,
-    #[command(flatten)]
-    pub restrictions: Restrictions,
+    /// A module that no action may move, though nothing else holds it; may be given several times
+    #[arg(long, value_name = "ID")]
+    pub forbid_module: Vec<String>,
+    /// A box that no move may pass through, by its lowest and highest corner in m; may be given several times
+    #[arg(
+        long,
+        value_name = "X0,Y0,Z0,X1,Y1,Z1",
+        value_parser = crate::restrictions::region,
+        allow_hyphen_values = true
+    )]
+    pub forbid_region: Vec<Region>,
 }
 
 /// `--planner`.

@@ -70,6 +70,9 @@ pub trait Family: Sync {
 /// What a search answers to a problem.
 pub type Answer<F> = Report<<F as Family>::Action, <F as Family>::Connection>;
 
+/// What a replay says of a plan.
+pub type Check<F> = Replay<<F as Family>::Connection, <F as Family>::Touched>;
+
 /// What looks at a running search.
 pub type OnEvent<'e, F> = dyn FnMut(&Event<<F as Family>::Action, <F as Family>::Connection>) + 'e;
 

@@ -6,15 +6,14 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use steadfast::io::{Problem, read_problem};
-use steadfast::reconfigure::replay::Replay;
 use steadfast::reconfigure::{Method, Objective, Options, Outcome, Reduction, Refusal};
 
 use crate::arguments::{ObjectiveArgument, PlannerArgument, PlanningArguments};
 use crate::exit::Exit;
-use crate::family::{Answer, Family};
+use crate::family::{Answer, Check, Family};
 use crate::progress::ProgressLine;
 use crate::summary::summary;
-use crate::{files, memory, output, profile};
+use crate::{files, memory, output, profile, restrictions};
 
 /// Exit code of a program that a second Ctrl-C ended at once.
 const INTERRUPTED: i32 = 130;
@@ -94,18 +93,14 @@ fn plan<F: Family>(arguments: &PlanningArguments, problem: &F) -> io::Result<Exi
 
 /// Replays every plan, the best one first, and notes what the replays say of them. The failure of the plan
 /// that does worst is what is returned: the best one, unless another one does not verify.
-fn appraise<F: Family>(
-    problem: &F,
-    report: &mut Answer<F>,
-    required: f64,
-) -> Result<Option<Replay<F::Connection, F::Touched>>, Refusal> {
+fn appraise<F: Family>(problem: &F, report: &mut Answer<F>, required: f64) -> Result<Option<Check<F>>, Refusal> {
     let mut first = None;
     for plan in report.plan.iter_mut().chain(&mut report.alternatives) {
         let replay = problem.replay(plan, required)?;
         if plan.margin.is_some() {
             *plan = problem.appraise(plan, &replay)?;
         }
-        if first.as_ref().is_none_or(|first: &Replay<_, _>| first.is_verified() && !replay.is_verified()) {
+        if first.as_ref().is_none_or(|first: &Check<F>| first.is_verified() && !replay.is_verified()) {
             first = Some(replay);
         }
     }
@@ -122,7 +117,7 @@ fn appraise<F: Family>(
 fn read(arguments: &PlanningArguments) -> io::Result<Result<Problem, Exit>> {
     let (start, goal) = (files::read(&arguments.start), files::read(&arguments.goal));
     match read_problem(&start, &goal, &files::resolve) {
-        Ok(mut problem) => match arguments.restrictions.apply(&mut problem) {
+        Ok(mut problem) => match restrictions::apply(arguments, &mut problem) {
             Ok(()) => Ok(Ok(problem)),
             Err(trouble) => output::refused(&start.name, [trouble], arguments.json).map(Err),
         },

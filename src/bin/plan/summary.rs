@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use steadfast::reconfigure::replay::Replay;
 use steadfast::reconfigure::{InTheWay, Limit, Objective, Outcome, Plan, Report};
-use steadfast::statics::Bracket;
+use steadfast::statics::{Bracket, Rung};
 
 use crate::family::{Answer, Family};
 use crate::{memory, verify};
@@ -48,6 +48,17 @@ pub fn summary<F: Family>(
         statistics.seconds,
         memory::spelled(statistics.bytes)
     );
+    if statistics.decided_by.total() > 0 {
+        let of = |rung| statistics.decided_by.of(rung);
+        let _ = writeln!(
+            text,
+            "of the solves {} by balance alone, {} by what a neighbouring state left, {} as soon as bounds told, {} to the end",
+            of(Rung::ClosedForm),
+            of(Rung::CarriedOver),
+            of(Rung::StoppedEarly),
+            of(Rung::Solved) + of(Rung::SolvedGenerally)
+        );
+    }
     text
 }
 

@@ -7,7 +7,7 @@ mod number;
 mod parse;
 mod string;
 
-pub(super) use parse::{Fault, parse};
+pub(super) use parse::{Fault, parse, parse_from};
 pub(super) use string::clipped;
 
 /// Half-open byte range of a text.
@@ -21,11 +21,6 @@ impl Span {
     pub(super) fn new(start: usize, end: usize) -> Self {
         let clip = |offset: usize| u32::try_from(offset).unwrap_or(u32::MAX);
         Self { start: clip(start), end: clip(end) }
-    }
-
-    /// The same range in a text that has so many bytes before it.
-    pub(super) fn moved_by(self, bytes: usize) -> Self {
-        Self::new(self.start as usize + bytes, self.end as usize + bytes)
     }
 
     pub(super) fn range(self) -> std::ops::Range<usize> {
@@ -60,26 +55,6 @@ pub(super) struct Member {
 }
 
 impl Node {
-    /// The same tree in a text that has so many bytes before it.
-    pub(super) fn moved_by(mut self, bytes: usize) -> Self {
-        self.span = self.span.moved_by(bytes);
-        match &mut self.value {
-            Value::Null | Value::Bool(_) | Value::Number(_) | Value::String(_) => {}
-            Value::Array(items) => {
-                *items = std::mem::take(items).into_iter().map(|item| item.moved_by(bytes)).collect()
-            }
-            Value::Object(members) => {
-                let moved = |member: Member| Member {
-                    key_span: member.key_span.moved_by(bytes),
-                    node: member.node.moved_by(bytes),
-                    ..member
-                };
-                *members = std::mem::take(members).into_iter().map(moved).collect();
-            }
-        }
-        self
-    }
-
     /// The value under `key`, if this is an object that has it.
     pub(super) fn get(&self, key: &str) -> Option<&Node> {
         match &self.value {

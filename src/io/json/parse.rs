@@ -31,7 +31,12 @@ impl Fault {
 /// Parses a whole text. Faults that do not stop the parser (duplicate keys,
 /// numbers out of range) come with the tree; a syntax error comes without one.
 pub(crate) fn parse(text: &str) -> (Option<Node>, Vec<Fault>) {
-    let mut parser = Parser { text, at: 0, depth: 0, faults: Vec::new() };
+    parse_from(text, 0)
+}
+
+/// Parses what stands in a text from a byte on, with places in the whole text.
+pub(crate) fn parse_from(text: &str, at: usize) -> (Option<Node>, Vec<Fault>) {
+    let mut parser = Parser { text, at, depth: 0, faults: Vec::new() };
     let root = parser.document();
     let mut faults = parser.faults;
     match root {
@@ -52,14 +57,15 @@ struct Parser<'a> {
 
 impl Parser<'_> {
     fn document(&mut self) -> Result<Node, Fault> {
-        if self.text.starts_with('\u{feff}') {
+        if self.at == 0 && self.text.starts_with('\u{feff}') {
             let hint = "save the file as UTF-8 without BOM";
             return Err(Fault::syntax(Span::new(0, 3), "the file starts with a byte-order mark", hint));
         }
+        let start = self.at;
         self.skip_space()?;
         if self.at == self.text.len() {
             let hint = "a file is one JSON object that names its format, e.g. {\"format\": \"structure/1\", ...}";
-            return Err(Fault::new(codes::EMPTY, Span::new(0, 0), "the file is empty", hint));
+            return Err(Fault::new(codes::EMPTY, Span::new(start, start), "the file is empty", hint));
         }
         let root = self.value()?;
         self.skip_space()?;

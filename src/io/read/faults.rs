@@ -107,6 +107,7 @@ pub(super) fn describe(problem: &Problem, ids: &[&str]) -> Option<(Code, String,
         | Fault::Negative
         | Fault::OutOfRange { .. }
         | Fault::DuplicateName { .. }
+        | Fault::FarCell { .. }
         | Fault::NoBodies
         | Fault::NoModules => return None,
         Fault::OriginOutsidePatch => (
@@ -135,9 +136,6 @@ pub(super) fn describe(problem: &Problem, ids: &[&str]) -> Option<(Code, String,
             owned("the faces towards the support and in this direction share no edge"),
             "the edge lies between two faces that are perpendicular to each other",
         ),
-        Fault::FarCell { .. } => {
-            (codes::OUT_OF_RANGE, owned("this cell is too far away"), "coordinates reach from -8 to 8")
-        }
         Fault::OwnCell { .. } => {
             (codes::MIXED, owned("this is the module's own cell"), "leave it out: cells are counted from the module's")
         }

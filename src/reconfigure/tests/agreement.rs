@@ -16,7 +16,7 @@ use crate::robot::{Cell, Configuration};
 use super::{cubes, goal, moves_of, plan, polycube, solved};
 
 /// Problems of at most five modules with a plan: start, goal, and how many modules are held.
-const SMALL: &[(&[Cell], &[Cell], usize)] = &[
+pub const SMALL: &[(&[Cell], &[Cell], usize)] = &[
     // A slide along a row on the ground.
     (&[[0, 0, 0], [1, 0, 0], [0, 0, 1]], &[[0, 0, 0], [1, 0, 0], [1, 0, 1]], 0),
     // Off the end of a row: half a turn down to the ground.

@@ -1,9 +1,11 @@
 //! Laws of actions, and the planner against unlike methods.
 
 mod agreement;
+mod carrying;
 mod heuristics;
 mod motions;
 mod outcomes;
+mod ranking;
 mod reports;
 mod restrictions;
 mod stencils;

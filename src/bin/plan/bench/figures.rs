@@ -78,15 +78,18 @@ impl Axis {
         (low - room, high + room)
     }
 
-    fn label(self, place: f64) -> String {
+    /// The label of a place on an axis of this length. A logarithmic one of several decades has labels at powers of
+    /// ten alone.
+    fn label(self, place: f64, length: f64) -> String {
         let value = match self.scale {
             Scale::Linear => place,
+            Scale::Logarithmic if length > 1.5 && (place - place.round()).abs() > 1e-9 => return String::new(),
             Scale::Logarithmic => 10_f64.powf(place),
         };
         match value.abs() {
             0.0 => "0".to_string(),
             size if !(1e-3..1e5).contains(&size) => format!("{value:.0e}"),
-            size if size < 1.0 => format!("{value:.3}").trim_end_matches('0').to_string(),
+            size if size < 1.0 => format!("{value:.3}").trim_end_matches('0').trim_end_matches('.').to_string(),
             size if size < 10.0 => format!("{value:.1}").trim_end_matches(".0").to_string(),
             _ => format!("{value:.0}"),
         }
@@ -119,8 +122,8 @@ impl Figure {
             .y_desc(self.y.name)
             .x_labels(7)
             .y_labels(7)
-            .x_label_formatter(&|place| self.x.label(*place))
-            .y_label_formatter(&|place| self.y.label(*place))
+            .x_label_formatter(&|place| self.x.label(*place, x.1 - x.0))
+            .y_label_formatter(&|place| self.y.label(*place, y.1 - y.0))
             .light_line_style(TRANSPARENT)
             .bold_line_style(RGBColor(225, 225, 225))
             .label_style((FONT, 12))

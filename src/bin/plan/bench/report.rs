@@ -5,7 +5,7 @@ use std::io;
 use std::path::Path;
 
 use steadfast::suite::Suite;
-use steadfast::suite::summary::{self, Curve, Entry, Naive, Row, Way};
+use steadfast::suite::summary::{self, Against, Curve, Entry, Naive, Row, Way};
 
 use super::figures::{Axis, Figure, Mark, Scale, Series};
 use crate::files;
@@ -106,7 +106,7 @@ impl Report<'_> {
         }
     }
 
-    fn figures(&self) -> [(&'static str, Figure); 4] {
+    fn figures(&self) -> [(&'static str, Figure); 5] {
         let [first, answered] = summary::solved_over_time(self.entries);
         let seconds = Axis { name: "time in s", scale: Scale::Logarithmic };
         let share = Axis { name: "share of the problems", scale: Scale::Linear };
@@ -116,11 +116,16 @@ impl Report<'_> {
             y: share,
             series: curves.iter().map(|curve| steps(curve, 0.0, SHORTEST)).collect(),
         };
-        let errors = summary::error_over_time(self.entries);
         let short = |curve: &Curve| {
             let mut curve = curve.clone();
             curve.steps.iter_mut().for_each(|step| step.share = step.share.max(SMALLEST_ERROR));
             steps(&curve, f64::NAN, SHORTEST)
+        };
+        let errors = |title, against| Figure {
+            title,
+            x: seconds,
+            y: Axis { name: "margin that is missing", scale: Scale::Logarithmic },
+            series: summary::error_over_time(self.entries, against).iter().map(short).collect(),
         };
         let growth = summary::growth(self.entries).into_iter().map(|(way, dots)| Series {
             name: title(&way),
@@ -133,15 +138,8 @@ impl Report<'_> {
         [
             ("first_plan.svg", over_time("A plan found, and verified later", &first)),
             ("answered.svg", over_time("Answered: best plan proved, or none exists", &answered)),
-            (
-                "error.svg",
-                Figure {
-                    title: "How far margins fall short of the best known (median)",
-                    x: seconds,
-                    y: Axis { name: "margin short of the best", scale: Scale::Logarithmic },
-                    series: errors.iter().map(short).collect(),
-                },
-            ),
+            ("error.svg", errors("How far margins fall short of the best known (median)", Against::BestKnown)),
+            ("gap.svg", errors("How far margins fall short of what is proved of all plans (median)", Against::Proved)),
             (
                 "growth.svg",
                 Figure {

@@ -1,0 +1,142 @@
+//! Bounds carried over from neighbours against values, and the search from both ends against the one from the start.
+
+use planners::{Reversible, Search, Space};
+use proptest::prelude::*;
+
+use crate::reconfigure::baseline::Baseline;
+use crate::reconfigure::domain::Domain;
+use crate::reconfigure::plan::{Objective, Outcome};
+use crate::reconfigure::problem::Problem;
+use crate::reconfigure::saturated::{Action, Saturated};
+use crate::reconfigure::{MARGIN_TOLERANCE, Options};
+use crate::robot::Cell;
+
+use super::{cubes, goal, plan, polycube};
+
+/// Asks something about the saturated space of a robot that is where it has to be.
+fn in_space<T>(filled: &[Cell], ask: impl FnOnce(&Saturated) -> T) -> T {
+    let state = cubes(filled, 1);
+    let problem = Problem::new(&state, &goal(state.clone())).unwrap();
+    let domain = Domain::new(&problem, true);
+    ask(&Saturated::new(&domain, planners::Width::UNLIMITED, f64::INFINITY))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    /// Whatever was asked before, a decision is on the side of the floor on which the margin is, and no bound is beaten
+    /// by a value.
+    #[test]
+    fn decisions_agree_with_values(filled in polycube(6), floors in proptest::collection::vec(0.0..1.0_f64, 3)) {
+        in_space(&filled, |space| {
+            let start = space.start();
+            for transition in space.transitions(&start).into_iter().take(6) {
+                let Action::Move(_) = transition.action else { continue };
+                let value = space.certify(&start, &transition.action, &transition.to, f64::NEG_INFINITY);
+                for &floor in &floors {
+                    let Some(bounds) = space.decide(&start, &transition.action, &transition.to, floor) else { continue };
+                    assert!(bounds.lower >= floor || bounds.upper < floor, "{bounds:?} at {floor}");
+                    let slack = MARGIN_TOLERANCE * value.lower.abs().max(1.0);
+                    assert!(bounds.lower <= value.upper + slack, "{bounds:?} against {value:?}");
+                    assert!(bounds.upper >= value.lower - slack, "{bounds:?} against {value:?}");
+                }
+            }
+        });
+    }
+
+    /// What leads into a state leads out of the states that it comes from, and costs and holds as much.
+    #[test]
+    fn transitions_into_a_state_are_those_out_of_others(filled in polycube(6)) {
+        in_space(&filled, |space| {
+            let state = space.start();
+            for into in space.transitions_into(&state) {
+                let out = space.transitions(&into.to);
+                let same = out.iter().find(|out| out.to == state && out.action == into.action);
+                let same = same.expect("every action reverses");
+                assert_eq!(same.cost, into.cost);
+            }
+            let (out, into) = (space.transitions(&state), space.transitions_into(&state));
+            let moves = out.iter().filter(|out| matches!(out.action, Action::Move(_)));
+            assert_eq!(moves.count(), into.len());
+            if let Some(there) = out.iter().find(|out| matches!(out.action, Action::Move(_))) {
+                let back = into.iter().find(|back| {
+                    let (Action::Move(a), Action::Move(b)) = (there.action, back.action) else { return false };
+                    back.to == there.to && a.inverse() == b
+                });
+                let back = back.expect("every move leads back");
+                let there = space.certify(&state, &there.action, &there.to, f64::NEG_INFINITY);
+                let back = space.certify(&back.to, &back.action, &state, f64::NEG_INFINITY);
+                assert!((there.lower - back.lower).abs() <= 1e-5, "{there:?} there, {back:?} back");
+            }
+        });
+    }
+}
+
+/// Starts and goals of cubes on the ground, the first one held.
+const PROBLEMS: &[(&[Cell], &[Cell])] = &[
+    (&[[0, 0, 0], [0, 0, 1], [0, 0, 2], [1, 0, 0]], &[[0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 0, 0]]),
+    (&[[0, 0, 0], [1, 0, 0], [1, 0, 1], [0, 0, 1]], &[[0, 0, 0], [0, 0, 1], [0, 0, 2], [1, 0, 2]]),
+    (
+        &[[0, 0, 0], [0, 1, 0], [1, 0, 0], [1, 1, 0], [0, 0, 1]],
+        &[[0, 0, 0], [0, 0, 1], [0, 0, 2], [1, 0, 0], [1, 0, 1]],
+    ),
+];
+
+/// By eager evaluation with cold solves, without estimates, and lazily from both ends: the same answer.
+#[test]
+fn baselines_find_the_same() {
+    for (from, to) in PROBLEMS {
+        let (start, target) = (cubes(from, 1), goal(cubes(to, 1)));
+        for objective in [Objective::Moves, Objective::Margin] {
+            let of = |baseline| {
+                let most = (objective == Objective::Margin).then_some(4000);
+                plan(&start, &target, &Options { objective, baseline, max_expansions: most, ..Options::default() })
+            };
+            let best = of(None);
+            assert_eq!(best.outcome, Outcome::Solved);
+            let best = best.plan.unwrap();
+            for baseline in [Baseline::Eager, Baseline::Blind] {
+                let other = of(Some(baseline));
+                // From the start alone, a proof about the open ground may have no end.
+                let (Outcome::Solved, Some(other)) = (&other.outcome, &other.plan) else { continue };
+                assert_eq!(other.moves, best.moves, "{from:?} to {to:?} by {baseline:?}");
+                if objective == Objective::Margin {
+                    let (a, b) = (other.margin.unwrap().lower, best.margin.unwrap().lower);
+                    assert!((a - b).abs() <= 2.0 * MARGIN_TOLERANCE, "{a} against {b} by {baseline:?}");
+                }
+            }
+        }
+    }
+}
+
+/// The fewest moves from either end alone and from both.
+#[test]
+fn both_ends_and_one_end_agree() {
+    for (from, to) in PROBLEMS {
+        let (start, target) = (cubes(from, 1), goal(cubes(to, 1)));
+        let problem = Problem::new(&start, &target).unwrap();
+        let domain = Domain::new(&problem, true);
+        let space = Saturated::new(&domain, planners::Width::UNLIMITED, f64::INFINITY);
+        for floor in [0.0, 0.2, 0.4] {
+            let fresh = || Search::new(&space, planners::Options::default());
+            let cost =
+                |outcome: planners::Outcome<_>| outcome.solved().map(|path: &planners::PathOf<Saturated>| path.cost);
+            assert_eq!(cost(fresh().from_both_ends(floor)), cost(fresh().shortest(floor)), "{from:?} to {to:?}");
+        }
+    }
+}
+
+#[test]
+fn the_largest_margin_does_not_depend_on_the_number_of_threads() {
+    let (from, to) = PROBLEMS[2];
+    let (start, target) = (cubes(from, 1), goal(cubes(to, 1)));
+    let with = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let mut report = pool.install(|| plan(&start, &target, &Options::default()));
+        report.statistics.seconds = 0.0;
+        report
+    };
+    let one = with(1);
+    assert_eq!(one, with(2));
+    assert_eq!(one, with(4));
+}
