@@ -67,14 +67,8 @@ pub fn write(domain: &Domain, ways: &mut Ways, carries: &[Carry], ends: &Ends) -
         phase: 1.0,
         connection: ends.start.and_then(|worst| worst.weakest).and_then(|seam| ports(&configuration, seam)),
     });
-    let mut plan = Plan {
-        margin: start,
-        moves: 0,
-        bottleneck,
-        actions: Vec::new(),
-        profile: Vec::new(),
-        if_stronger: None,
-    };
+    let mut plan =
+        Plan { margin: start, moves: 0, bottleneck, actions: Vec::new(), profile: Vec::new(), if_stronger: None };
     let mut before = start.map_or(f64::NEG_INFINITY, |margin| margin.lower);
     for step in expand(problem, &path) {
         let action = step.action(&configuration).expect("a path takes steps that its states have");

@@ -120,7 +120,10 @@ fn run(
     let mut legal = true;
     let movers = neighbouring_movers(plan);
     for (index, planned) in plan.actions.iter().enumerate() {
-        let bound = planned.margin.filter(|_| stronger.is_none()).and_then(|claim| claims::bound(&claim, planned.action.is_move()));
+        let bound = planned
+            .margin
+            .filter(|_| stronger.is_none())
+            .and_then(|claim| claims::bound(&claim, planned.action.is_move()));
         match transition(&state, &planned.action) {
             Err(fault) => {
                 checker.judge.fail(Some(index), None, fault, None);
