@@ -155,8 +155,9 @@ fn the_standard_suite_is_sound_and_damage_to_it_is_an_error() {
         let mut damaged = bytes.clone();
         for _ in 0..1 + round % 4 {
             word = word.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            let at = (word >> 33) as usize % damaged.len();
+            let at = (word >> 33) as usize % damaged.len().max(1);
             match (word >> 20) % 3 {
+                _ if damaged.is_empty() => {}
                 0 => damaged[at] = b"[]{}=.,\"'#\n0-e_ \xff"[(word >> 40) as usize % 17],
                 1 => drop(damaged.remove(at)),
                 _ => damaged.truncate(at.max(1)),

@@ -20,7 +20,7 @@ pub type Shortest<'e, S> = &'e dyn for<'s> Fn(&mut Search<'s, S>, f64) -> Outcom
 impl<S: Space> Search<'_, S> {
     /// The cheapest path of a width of at least `floor`, by `shortest`, with another path in hand before.
     ///
-    /// Every path that is better than those before it goes to `on_path`: first one that a greedy search finds, where the
+    /// Every path that is better than those before it goes to `on_path`: first one that a greedy search finds soon, where the
     /// space has bounds on remaining costs to be greedy by, and then the cheapest. Both take turns as long as neither
     /// has found anything, so that where `shortest` soon proves that there is nothing, no more is looked for.
     ///

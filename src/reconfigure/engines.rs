@@ -161,7 +161,9 @@ impl Task<'_> {
         });
         options.budget.max_expansions = Some(report.statistics.expanded.saturating_mul(2).max(EXPLANATION));
         let mut search = Search::new(space, options);
-        let widest = search.widest(f64::NEG_INFINITY);
+        // With a path in hand early, whatever ends it.
+        let shortest: Shortest<'_, S> = &|search, floor| search.shortest(floor);
+        let widest = search.anytime_margin(f64::NEG_INFINITY, shortest, &mut |_| {});
         let plan = widest.best().map(|path| translation.plan(&actions::<S>(path)));
         let at_most = widest.proof().map_or(f64::NEG_INFINITY, |proof| proof.width_at_most);
         let mut found = InTheWay::new(plan, at_most, required);

@@ -88,11 +88,19 @@ pub fn solve(
             }
         },
     };
+    if is_for_decomposition(&problem, options) {
+        return finished(report, &domain, began);
+    }
     let space = Saturated::new(&domain, ends.start_width(), ends.at_most());
     let steps = |path: &[saturated::Action]| expand(&problem, path);
     report.in_the_way = task.in_the_way(&space, &Plans { domain: &domain, steps }, &report, &|reached| {
         Some(problem.unmoved(&reached.iter().map(|state| state.layout()).collect::<Vec<_>>()))
     });
+    finished(report, &domain, began)
+}
+
+/// The report with what it took.
+fn finished(mut report: Report, domain: &Domain, began: Instant) -> Result<Report, Refusal> {
     if let Some(fault) = domain.oracle.fault() {
         return Err(Refusal::Structure(fault));
     }

@@ -27,8 +27,10 @@ pub struct Arguments {
 const EXIT_CODES: &str = "Exit codes: 0 plan found, structure stable, plan verified; 2 usage; 10 proved that no plan \
 exists, structure unstable, plan does not verify; 11 not decided within the limits; 30 bad input; 101 a bug";
 
-/// What `plan START GOAL` can be asked.
+/// What `plan START GOAL` can be asked. It is there when these two are: without their names in the group, the arguments
+/// that are flattened into it would leave the group empty.
 #[derive(Debug, Args)]
+#[group(args = ["start", "goal"])]
 pub struct PlanningArguments {
     /// Where the robot is: a configuration/1 file
     #[arg(required = true)]

@@ -30,7 +30,6 @@ pub(crate) struct Catalogue {
     /// Motions of modules with ports `faces` beside `slide` and `pivot`, by name: all ways to make
     /// each. For every way there must be one that leads back.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
-    #[schemars(inner(length(min = 1, max = 64)))]
     pub(crate) motions: IndexMap<String, Vec<Stencil>>,
     /// Module types by name.
     pub(crate) module_types: IndexMap<String, ModuleType>,

@@ -1,6 +1,7 @@
 //! What the modules that stay where they are carry.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use rayon::prelude::*;
@@ -84,18 +85,23 @@ pub struct Rests<'a> {
     configuration: &'a Configuration,
     assembler: Assembler<'a>,
     memory: Option<Memory>,
-    solves: AtomicU64,
+    solves: Arc<AtomicU64>,
 }
 
 impl<'a> Rests<'a> {
     /// Of the modules of `configuration`, in its environment and under its loads.
     pub fn new(configuration: &'a Configuration) -> Self {
-        Self { configuration, assembler: Assembler::new(configuration), memory: None, solves: AtomicU64::new(0) }
+        Self { configuration, assembler: Assembler::new(configuration), memory: None, solves: Arc::default() }
     }
 
     /// Structures assessed so far.
     pub fn solves(&self) -> u64 {
         self.solves.load(Ordering::Relaxed)
+    }
+
+    /// Where they are counted, also while someone asks.
+    pub fn counter(&self) -> Arc<AtomicU64> {
+        Arc::clone(&self.solves)
     }
 
     /// All modules but `module`, held together by `engaged`, of which those of `module` play no part.

@@ -40,8 +40,8 @@ pub struct Carry {
     pub margin: f64,
 }
 
-/// What a caller hears of an attempt: how many modules are not yet in place; says whether to go on.
-pub type Watch<'w> = dyn FnMut(usize) -> bool + 'w;
+/// Is called before every carry; says whether to go on.
+pub type Watch<'w> = dyn FnMut() -> bool + 'w;
 
 /// How an attempt ended.
 #[derive(Clone, Debug)]
@@ -110,7 +110,7 @@ impl<'a> Builder<'a> {
             if left.is_empty() {
                 return Attempt::Done(self.carries);
             }
-            if !watch(left.len()) {
+            if !watch() {
                 return Attempt::Stopped;
             }
             idle = if left.len() < fewest { 0 } else { idle + 1 };

@@ -17,6 +17,8 @@ pub struct Levels {
     missed: usize,
     /// The last one tried, by its place; `None` for one between two of the list, which is the last of all.
     tried: Option<usize>,
+    /// No plan has a larger margin.
+    at_most: f64,
     is_over: bool,
 }
 
@@ -29,7 +31,7 @@ impl Levels {
             listed = vec![required];
             listed.extend(SHARES.iter().map(|share| required + share * span).filter(|&level| level > required));
         }
-        Self { attained: 0, missed: listed.len(), listed, tried: None, is_over: false }
+        Self { attained: 0, missed: listed.len(), listed, tried: None, at_most, is_over: false }
     }
 
     /// The next margin. When the list is decided, the last one is the largest margin of any move
@@ -46,7 +48,7 @@ impl Levels {
         self.is_over = true;
         self.tried = None;
         let low = *self.listed.get(self.attained.checked_sub(1)?)?;
-        let high = self.listed.get(self.missed).copied().unwrap_or(1.0);
+        let high = self.listed.get(self.missed).copied().unwrap_or(self.at_most);
         ways.largest_margin_below(high).filter(|&margin| margin > low)
     }
 

@@ -27,7 +27,7 @@ use planners::Limit;
 use super::domain::Domain;
 use super::hanging::Rests;
 use super::options::{Event, Known, News, Options, Pass};
-use super::plan::{Outcome, Plan, Proof, Report, Statistics};
+use super::plan::{Objective, Outcome, Plan, Proof, Report, Statistics};
 use crate::statics::Bracket;
 use builder::{Attempt, Builder};
 use levels::Levels;
@@ -70,6 +70,16 @@ pub fn decompose(
     let mut plan: Option<Plan> = None;
     let mut stopped = None;
     let mut statistics = Statistics::default();
+    let asked = rests.counter();
+    let known = |plan: Option<&Plan>, expanded: u64| Known {
+        pass: Pass::Greedy,
+        margin: plan.and_then(|plan| plan.margin).map(|margin| margin.lower),
+        moves: plan.map(|plan| plan.moves),
+        margin_at_most: ends.at_most(),
+        moves_at_least: fewest,
+        statistics: planners::Statistics { expanded, ..planners::Statistics::default() },
+        oracle_solves: domain.oracle.solves() + asked.load(Ordering::Relaxed),
+    };
     let mut levels = Levels::new(domain, required, ends.at_most());
     while let Some(floor) = levels.next(&ways) {
         let is_required = levels.is_required();
@@ -77,23 +87,9 @@ pub fn decompose(
         let mut is_attained = false;
         for attempt in 0..if is_required { ATTEMPTS } else { 1 } {
             let seed = options.seed.wrapping_add(attempt);
-            let mut watch = |left: usize| {
+            let mut watch = || {
                 statistics.expanded += 1;
-                statistics.states = statistics.states.max((targets.len() - left) as u64);
-                let known = Known {
-                    pass: Pass::Greedy,
-                    margin: plan.as_ref().and_then(|plan| plan.margin).map(|margin| margin.lower),
-                    moves: plan.as_ref().map(|plan| plan.moves),
-                    margin_at_most: ends.at_most(),
-                    moves_at_least: fewest,
-                    statistics: planners::Statistics {
-                        expanded: statistics.expanded,
-                        states: left,
-                        ..planners::Statistics::default()
-                    },
-                    oracle_solves: domain.oracle.solves(),
-                };
-                on_event(&Event { news: News::Progress, known });
+                on_event(&Event { news: News::Progress, known: known(plan.as_ref(), statistics.expanded) });
                 stopped = stopped_by();
                 stopped.is_none()
             };
@@ -102,8 +98,10 @@ pub fn decompose(
                     is_attained = true;
                     let written = write(domain, &mut ways, &carries, &ends);
                     let is_enough = |margin: Bracket| required.is_none_or(|required| margin.lower >= required);
-                    if written.margin.is_none_or(is_enough) && is_better(&written, plan.as_ref()) {
+                    if written.margin.is_none_or(is_enough) && is_better(&written, plan.as_ref(), options.objective) {
+                        let news = News::Plan(written.clone());
                         plan = Some(written);
+                        on_event(&Event { news, known: known(plan.as_ref(), statistics.expanded) });
                     }
                 }
                 Attempt::Stopped | Attempt::Stuck => {}
@@ -125,18 +123,25 @@ pub fn decompose(
         plan,
         alternatives: Vec::new(),
         alternatives_cut_by: None,
+        in_the_way: None,
         proof: Proof {
             optimal: false,
             margin_at_most: ends.at_most(),
             moves_at_least: u32::try_from(fewest).unwrap_or(u32::MAX),
         },
         statistics,
-        in_the_way: None,
     }
 }
 
-/// Whether a plan has a larger margin than the best so far, or none and fewer moves.
-fn is_better(plan: &Plan, best: Option<&Plan>) -> bool {
-    let margin = |plan: &Plan| plan.margin.map_or(f64::NEG_INFINITY, |margin| margin.lower);
-    best.is_none_or(|best| margin(plan) > margin(best) || margin(plan) == margin(best) && plan.moves < best.moves)
+/// Whether a plan is better than the best so far.
+fn is_better(plan: &Plan, best: Option<&Plan>, objective: Objective) -> bool {
+    let Some(best) = best else { return true };
+    let margin = |plan: &Plan| plan.margin.map_or(f64::INFINITY, |margin| margin.lower);
+    let by_margin = margin(plan).total_cmp(&margin(best));
+    let by_moves = best.moves.cmp(&plan.moves);
+    let order = match objective {
+        Objective::Moves => by_moves.then(by_margin),
+        _ => by_margin.then(by_moves),
+    };
+    order.is_gt()
 }

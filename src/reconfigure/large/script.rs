@@ -56,9 +56,9 @@ pub fn write(domain: &Domain, ways: &mut Ways, carries: &[Carry], ends: &Ends) -
     path.extend(arrival.map(saturated::Action::Finish));
     let arrived = arrival.filter(|_| domain.stability).map(|arrival| {
         let elsewhere = || domain.of_state(&layout, &problem.goal().bonds(arrival));
-        ends.goal.unwrap_or_else(elsewhere).margin.lower
+        ends.goal.unwrap_or_else(elsewhere).margin
     });
-    let at_the_end = arrived.unwrap_or(f64::NEG_INFINITY);
+    let at_the_end = arrived.map_or(f64::NEG_INFINITY, |margin| margin.lower);
 
     let mut configuration = problem.start().clone();
     let start = ends.start.filter(|_| domain.stability).map(|worst| worst.margin);
@@ -69,10 +69,12 @@ pub fn write(domain: &Domain, ways: &mut Ways, carries: &[Carry], ends: &Ends) -
     });
     let mut plan =
         Plan { margin: start, moves: 0, bottleneck, actions: Vec::new(), profile: Vec::new(), if_stronger: None };
+    let steps = expand(problem, &path);
+    let last = steps.len().saturating_sub(1);
     let mut before = start.map_or(f64::NEG_INFINITY, |margin| margin.lower);
-    for step in expand(problem, &path) {
+    for (index, step) in steps.into_iter().enumerate() {
         let action = step.action(&configuration).expect("a path takes steps that its states have");
-        let (margin, phase, weakest) = match step {
+        let (mut margin, phase, weakest) = match step {
             Step::Move(_) => {
                 let Proved { margin, phase, weakest } = &proved[plan.moves as usize];
                 before = margin.lower;
@@ -85,6 +87,9 @@ pub fn write(domain: &Domain, ways: &mut Ways, carries: &[Carry], ends: &Ends) -
                 (Bracket::new(before.min(after), 1.0), 1.0, None)
             }
         };
+        if let Some(arrived) = arrived.filter(|_| index == last) {
+            margin.upper = margin.upper.min(arrived.upper).max(margin.lower);
+        }
         if let Some(so_far) = plan.margin {
             if margin.lower < so_far.lower {
                 let connection = weakest.and_then(|holder| held(&configuration, step, holder));

@@ -79,18 +79,15 @@ pub fn replay(start: &Configuration, goal: &Goal, plan: &Plan, required: f64) ->
 /// # Errors
 /// [`Refusal`] when start and goal themselves are unsound.
 pub fn appraise(start: &Configuration, goal: &Goal, plan: &Plan, replay: &Replay) -> Result<Plan, Refusal> {
-    let weakest = plan.bottleneck.as_ref().filter(|_| has_values(plan)).and_then(|bottleneck| bottleneck.connection);
+    // Of a plan that claims bounds only, nothing says how much of the margin is its bottleneck's.
+    let is_value = |planned: &PlannedAction| {
+        planned.margin.is_none_or(|claim| claims::bound(&claim, planned.action.is_move()).is_none())
+    };
+    let bottleneck = plan.bottleneck.as_ref().filter(|_| plan.actions.iter().all(is_value));
+    let weakest = bottleneck.and_then(|bottleneck| bottleneck.connection);
     let again = weakest.map(|held| run(start, goal, plan, f64::NEG_INFINITY, Some((held, TWICE)))).transpose()?;
     let if_stronger = again.map(|again| IfStronger { factor: TWICE, margin: again.margin });
     Ok(Plan { profile: profile(replay), if_stronger, ..plan.clone() })
-}
-
-/// Whether a plan claims margins rather than bounds on them.
-fn has_values(plan: &Plan) -> bool {
-    let is_bound = |planned: &PlannedAction| {
-        planned.margin.is_some_and(|claim| claims::bound(&claim, planned.action.is_move()).is_some())
-    };
-    !plan.actions.iter().any(is_bound)
 }
 
 /// How much stronger a bottleneck is taken to be.
@@ -120,10 +117,8 @@ fn run(
     let mut legal = true;
     let movers = neighbouring_movers(plan);
     for (index, planned) in plan.actions.iter().enumerate() {
-        let bound = planned
-            .margin
-            .filter(|_| stronger.is_none())
-            .and_then(|claim| claims::bound(&claim, planned.action.is_move()));
+        let claim = planned.margin.filter(|_| stronger.is_none());
+        let bound = claim.and_then(|claim| claims::bound(&claim, planned.action.is_move()));
         match transition(&state, &planned.action) {
             Err(fault) => {
                 checker.judge.fail(Some(index), None, fault, None);

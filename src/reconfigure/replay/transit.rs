@@ -21,9 +21,9 @@ pub(super) struct Checker<'a> {
     assembler: &'a Assembler<'a>,
     surroundings: Surroundings,
     off_limits: Surroundings,
+    pub bounds: Bounds<'a>,
     /// A connection that is taken to be so many times as strong as it is.
     stronger: Option<(FaceConnection, f64)>,
-    pub bounds: Bounds<'a>,
     pub judge: Judge<FaceConnection, Touched>,
 }
 
@@ -37,7 +37,7 @@ impl<'a> Checker<'a> {
         let surroundings = Surroundings::new(&start.environment);
         let off_limits = Surroundings::new(&start.require.off_limits());
         let judge = Judge::new(required, start.require.connected);
-        Self { assembler, surroundings, off_limits, stronger, bounds: Bounds::new(start), judge }
+        Self { assembler, surroundings, off_limits, bounds: Bounds::new(start), stronger, judge }
     }
 
     /// Checks a state at rest: whether it has a margin, by bounds with one of two modules hanging on the others, where
