@@ -28,7 +28,7 @@ const LAZY: f64 = 20.0;
 const GUIDED: f64 = 10.0;
 
 /// A baseline is given up after so many times the expansions of the planner; its ratio is then at least that.
-const PATIENCE: u64 = 200;
+const PATIENCE: u64 = 30;
 
 /// Problems with more modules are left out of the comparison with baselines.
 const SMALL: usize = 6;

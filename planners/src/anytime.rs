@@ -33,18 +33,16 @@ impl<S: Space> Search<'_, S> {
         shortest: Shortest<'_, S>,
         on_path: &mut dyn FnMut(&PathOf<S>),
     ) -> Outcome<PathOf<S>> {
-        let mut early = None;
-        let has_bounds = !matches!(self.graph.remaining(START), 0 | DEAD_END);
+        if matches!(self.graph.remaining(START), 0 | DEAD_END) {
+            return told(shortest(self, floor), None, on_path);
+        }
         let mut share = FIRST_SHARE;
-        while has_bounds {
+        let early = loop {
             self.begin();
             self.monitor.progress.pass = Pass::Greedy;
             let ShortestRun { best, limit, .. } = self.sharing(share, |search| search.hurry(floor)).0;
             if let Some(arrows) = best {
-                let path = self.path(&arrows);
-                on_path(&path);
-                early = Some(path);
-                break;
+                break self.path(&arrows);
             } else if limit.is_none() {
                 return Outcome::Impossible;
             }
@@ -53,9 +51,9 @@ impl<S: Space> Search<'_, S> {
                 return told(outcome, None, on_path);
             }
             share = share.saturating_mul(2);
-        }
-        let outcome = shortest(self, floor);
-        told(outcome, early, on_path)
+        };
+        on_path(&early);
+        told(shortest(self, floor), Some(early), on_path)
     }
 
     /// The cheapest of the widest paths among those of a width of at least `floor`, like [`Search::margin`], with
