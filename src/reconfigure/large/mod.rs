@@ -123,6 +123,7 @@ pub fn decompose(
         plan,
         alternatives: Vec::new(),
         alternatives_cut_by: None,
+        in_the_way: None,
         proof: Proof { optimal: false, margin_at_most: ends.at_most(), moves_at_least: fewest },
         statistics,
     }
