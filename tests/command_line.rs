@@ -583,3 +583,13 @@ fn the_margin_of_a_robot_outside_lattices_is_certified() {
     assert_eq!(output.status.code(), Some(0));
     assert!(stdout(&output).starts_with("VERIFIED: stable"), "{output:?}");
 }
+
+#[test]
+fn what_only_lattices_have_is_refused_for_other_robots() {
+    for option in [&["--primitive"][..], &["--planner", "decompose"]] {
+        let ends = ["freesn/strut_over/start.json", "freesn/strut_over/goal.json"];
+        let output = plan(&[&ends[..], option].concat());
+        assert_eq!(output.status.code(), Some(30), "{output:?}");
+        assert!(String::from_utf8_lossy(&output.stderr).contains("for lattices only"), "{output:?}");
+    }
+}

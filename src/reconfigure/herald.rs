@@ -26,7 +26,9 @@ impl<'a, A, C> Herald<'a, A, C> {
         // Bounds of a ranking are about the plans that are still to be found.
         if progress.pass != Pass::KBest {
             self.known.margin_at_most = before.margin_at_most.min(progress.width_at_most);
-            self.known.moves_at_least = before.moves_at_least.max(progress.cost_at_least);
+            // A search for a wider path proves nothing about those as wide as the one in hand.
+            let moves = progress.cost_at_least.min(before.moves.unwrap_or(u32::MAX));
+            self.known.moves_at_least = before.moves_at_least.max(moves);
         }
         // When nothing is left to be found, "none has fewer than any number" is no news.
         if self.known.moves_at_least == u32::MAX {

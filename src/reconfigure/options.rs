@@ -107,7 +107,8 @@ pub struct Known {
     pub moves: Option<u32>,
     /// No plan has a larger margin.
     pub margin_at_most: f64,
-    /// No plan that would be better than the best so far, or as good, has fewer moves.
+    /// No plan that would be better than the best so far (by margin, where that counts first: by more than the tolerance) has
+    /// fewer moves.
     pub moves_at_least: u32,
     /// What the search has spent.
     pub statistics: planners::Statistics,

@@ -48,6 +48,11 @@ pub enum Refusal {
         /// What stands in the way.
         because: &'static str,
     },
+    /// Something is asked for that only lattices have.
+    LatticesOnly {
+        /// What, in the plural.
+        what: &'static str,
+    },
 }
 
 /// The start or the goal.
@@ -148,6 +153,7 @@ impl fmt::Display for Refusal {
                 write!(f, "the goal does not place module `{module}`, which carries a load in the start")
             }
             Self::NoFreeFrame { because } => write!(f, "the goal cannot be met up to a displacement: {because}"),
+            Self::LatticesOnly { what } => write!(f, "{what} are for lattices only"),
         }
     }
 }

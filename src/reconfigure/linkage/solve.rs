@@ -5,7 +5,7 @@ use std::time::Instant;
 use planners::Width;
 
 use crate::reconfigure::engines::{Task, Translation};
-use crate::reconfigure::options::{Event, Options};
+use crate::reconfigure::options::{Event, Method, Options, Reduction};
 use crate::reconfigure::plan::{Plan, Report};
 use crate::reconfigure::refusal::{Impossible, Refusal, Rejection, Which};
 use crate::reconfigure::worst::Worst;
@@ -29,7 +29,7 @@ use super::saturated::{self, Saturated};
 /// [`replay`](super::replay::replay) takes a goal as met wherever masses and ports are alike, which may take fewer moves.
 ///
 /// # Errors
-/// [`Refusal`] for bad input.
+/// [`Refusal`] for bad input, and for methods that only lattices have.
 pub fn solve(
     start: &Linkage,
     goal: &Goal,
@@ -37,6 +37,11 @@ pub fn solve(
     on_event: &mut dyn FnMut(&Event<Action, Held>),
 ) -> Result<Report<Action, Held>, Refusal> {
     let began = Instant::now();
+    match (options.reduction, options.method) {
+        (Reduction::Primitive, _) => return Err(Refusal::LatticesOnly { what: "searches over single actions" }),
+        (_, Method::Decompose) => return Err(Refusal::LatticesOnly { what: "decompositions" }),
+        (Reduction::Saturated, Method::Auto | Method::Exact) => {}
+    }
     let required = options.min_margin.map_or(start.require.margin, |least| least.max(start.require.margin));
     let required = (!options.ignore_stability).then_some(required);
     let problem = match Problem::new(start, goal) {

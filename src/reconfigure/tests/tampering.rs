@@ -105,8 +105,14 @@ fn altered_poses_and_claims_are_rejected() {
     tampered.bottleneck.as_mut().unwrap().phase = 0.123;
     rejected(&tampered, "another bottleneck");
     let mut tampered = best.clone();
-    tampered.actions[1].margin.as_mut().unwrap().upper += 0.01;
+    let claim = tampered.actions[1].margin.as_mut().unwrap();
+    (claim.lower, claim.upper) = (claim.lower + 0.01, claim.upper + 0.01);
     rejected(&tampered, "a larger margin of one action");
+    // A bracket that only leaves more open is a weaker claim, and true; one that begins above the margin is not.
+    let mut tampered = best.clone();
+    let claim = tampered.actions[1].margin.as_mut().unwrap();
+    (claim.lower, claim.upper) = (claim.lower + 0.01, claim.upper + 0.02);
+    rejected(&tampered, "a bound above the margin");
     let mut elsewhere = start.clone();
     elsewhere.modules[3].placement.cell = [2, 0, 0];
     assert!(replay(&elsewhere, &target, &best, 0.0).is_err(), "a start that is not what was connected");
