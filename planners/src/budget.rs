@@ -57,8 +57,8 @@ pub struct Statistics {
 }
 
 impl Budget {
-    /// The first limit that is exceeded.
-    pub(crate) fn exceeded(&self, spent: &Statistics) -> Option<Limit> {
+    /// The first limit that is exceeded when so much is spent.
+    pub fn exceeded(&self, spent: &Statistics) -> Option<Limit> {
         if self.cancel.as_ref().is_some_and(|cancel| cancel.load(Ordering::Relaxed)) {
             Some(Limit::Cancelled)
         } else if self.max_expansions.is_some_and(|most| spent.expanded >= most) {

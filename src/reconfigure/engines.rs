@@ -129,13 +129,7 @@ impl Task<'_> {
     }
 
     fn search_options(&self) -> planners::Options {
-        let budget = Budget {
-            deadline: self.options.time_limit.and_then(|limit| self.began.checked_add(limit)),
-            max_expansions: self.options.max_expansions,
-            max_bytes: self.options.max_bytes,
-            measure_bytes: self.options.measure_bytes,
-            cancel: self.options.cancel.clone(),
-        };
+        let budget = budget(self.options, self.began);
         planners::Options { tolerance: MARGIN_TOLERANCE, budget, ..planners::Options::default() }
     }
 
@@ -268,6 +262,17 @@ impl<P> Answer<P> {
         let mut found: Vec<P> = found.into_iter().flatten().collect();
         found.reverse();
         Self { ending, found, proof, cut_by }
+    }
+}
+
+/// What may be spent on planning that began then.
+pub fn budget(options: &Options, began: Instant) -> Budget {
+    Budget {
+        deadline: options.time_limit.and_then(|limit| began.checked_add(limit)),
+        max_expansions: options.max_expansions,
+        max_bytes: options.max_bytes,
+        measure_bytes: options.measure_bytes,
+        cancel: options.cancel.clone(),
     }
 }
 

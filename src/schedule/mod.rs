@@ -11,7 +11,7 @@
 //!   ([`until`]);
 //! - [`plan_batch`] plans many problems at once.
 //!
-//! Which actions of a plan may run at the same time, [`partial_order`](crate::reconfigure::partial_order()) says.
+//! Which actions of a plan may run at the same time, [`partial_order`](mod@crate::reconfigure::partial_order) says.
 //! Errors are types, and nothing is printed.
 //!
 //! ```

@@ -9,6 +9,9 @@ use steadfast::statics::{Bracket, Rung};
 use crate::family::{Answer, Family};
 use crate::{memory, verify};
 
+/// Width from which on a margin is shown as a bound: below it the digits that are shown are known.
+const BOUND: f64 = 1e-4;
+
 /// What was found, what it is worth, what limits it, and what was proved.
 pub fn summary<F: Family>(
     problem: &F,
@@ -211,11 +214,11 @@ fn proved<A, C>(text: &mut String, report: &Report<A, C>) {
 fn verified<F: Family>(problem: &F, report: &Answer<F>, replay: &Replay<F::Connection, F::Touched>) -> String {
     match replay.failures.first() {
         None => {
-            let (states, margin) = (replay.oracle_solves, replay.margin.lower);
-            format!(
-                "verified: replayed {} actions over {states} states, smallest margin {margin:.4}\n",
-                replay.actions_replayed
-            )
+            let (actions, states, margin) = (replay.actions_replayed, replay.oracle_solves, replay.margin);
+            // Where a plan claims bounds only, so does its replay.
+            let least = if margin.upper - margin.lower > BOUND { " at least" } else { "" };
+            let margin = margin.lower;
+            format!("verified: replayed {actions} actions over {states} states, smallest margin{least} {margin:.4}\n")
         }
         Some(failure) if report.required.is_none() => {
             format!("carried out, it would fail: {}\n", verify::sentence(problem, report.plan.as_ref(), failure))

@@ -25,6 +25,7 @@ use std::time::Instant;
 use planners::Limit;
 
 use super::domain::Domain;
+use super::engines::budget;
 use super::hanging::Rests;
 use super::options::{Event, Known, News, Options, Pass};
 use super::plan::{Objective, Outcome, Plan, Proof, Report, Statistics};
@@ -58,12 +59,7 @@ pub fn decompose(
     let targets: Targets = goal.placed().iter().map(|placed| (placed.cell, placed.class)).collect();
     let mut ways = Ways::new(domain);
     let mut rests = Rests::new(problem.start());
-    let deadline = options.time_limit.and_then(|limit| began.checked_add(limit));
-    let stopped_by = || {
-        let cancelled = options.cancel.as_ref().is_some_and(|cancel| cancel.load(Ordering::Relaxed));
-        let late = deadline.is_some_and(|deadline| Instant::now() >= deadline);
-        if cancelled { Some(Limit::Cancelled) } else { late.then_some(Limit::Deadline) }
-    };
+    let budget = budget(options, began);
     // Every module that is not where the goal wants one moves at least once. In a free frame others might stay.
     let fewest = if problem.goal().is_free() { 0 } else { shape::surplus(problem.start_layout(), &targets).len() };
     let fewest = u32::try_from(fewest).unwrap_or(u32::MAX);
@@ -90,7 +86,10 @@ pub fn decompose(
             let mut watch = || {
                 statistics.expanded += 1;
                 on_event(&Event { news: News::Progress, known: known(plan.as_ref(), statistics.expanded) });
-                stopped = stopped_by();
+                let bytes = options.measure_bytes.and_then(|measure| measure()).unwrap_or(0);
+                statistics.bytes = statistics.bytes.max(bytes as u64);
+                let expanded = statistics.expanded;
+                stopped = budget.exceeded(&planners::Statistics { expanded, bytes, ..planners::Statistics::default() });
                 stopped.is_none()
             };
             match Builder::new(domain, &targets, floor, seed, patience).run(&mut ways, &mut rests, &mut watch) {
