@@ -74,7 +74,7 @@ pub fn write(domain: &Domain, ways: &mut Ways, carries: &[Carry], ends: &Ends) -
     let mut before = start.map_or(f64::NEG_INFINITY, |margin| margin.lower);
     for (index, step) in steps.into_iter().enumerate() {
         let action = step.action(&configuration).expect("a path takes steps that its states have");
-        let (mut margin, phase, weakest) = match step {
+        let (mut margin, mut phase, weakest) = match step {
             Step::Move(_) => {
                 let Proved { margin, phase, weakest } = &proved[plan.moves as usize];
                 before = margin.lower;
@@ -88,7 +88,9 @@ pub fn write(domain: &Domain, ways: &mut Ways, carries: &[Carry], ends: &Ends) -
             }
         };
         if let Some(arrived) = arrived.filter(|_| index == last) {
+            // The goal itself bounds it from above, and where it does not reach that, nothing says when it is least.
             margin.upper = margin.upper.min(arrived.upper).max(margin.lower);
+            phase = 1.0;
         }
         if let Some(so_far) = plan.margin {
             if margin.lower < so_far.lower {
