@@ -6,6 +6,7 @@ use crate::reconfigure::layout::{Layout, displaced};
 use crate::reconfigure::moves::Move;
 use crate::reconfigure::oracle::{Seam, Worst};
 use crate::reconfigure::plan::{Bottleneck, Plan, PlannedAction};
+use crate::reconfigure::replay::claims;
 use crate::reconfigure::saturated;
 use crate::reconfigure::step::Step;
 use crate::robot::{Cell, Configuration, Face};
@@ -56,17 +57,19 @@ pub fn write(domain: &Domain, ways: &mut Ways, carries: &[Carry], ends: &Ends) -
     path.extend(arrival.map(saturated::Action::Finish));
     let arrived = arrival.filter(|_| domain.stability).map(|arrival| {
         let elsewhere = || domain.of_state(&layout, &problem.goal().bonds(arrival));
-        ends.goal.unwrap_or_else(elsewhere).margin
+        ends.goal.unwrap_or_else(elsewhere)
     });
-    let at_the_end = arrived.map_or(f64::NEG_INFINITY, |margin| margin.lower);
+    let at_the_end = arrived.map_or(f64::NEG_INFINITY, |worst| worst.margin.lower);
 
     let mut configuration = problem.start().clone();
     let start = ends.start.filter(|_| domain.stability).map(|worst| worst.margin);
-    let bottleneck = start.map(|_| Bottleneck {
-        action: None,
+    let at_rest = |action: Option<usize>, worst: Option<Worst>, configuration: &Configuration| Bottleneck {
+        action,
         phase: 1.0,
-        connection: ends.start.and_then(|worst| worst.weakest).and_then(|seam| ports(&configuration, seam)),
-    });
+        connection: worst.and_then(|worst| worst.weakest).and_then(|seam| ports(configuration, seam)),
+    };
+    let at_start = start.map(|_| at_rest(None, ends.start, &configuration));
+    let bottleneck = at_start.clone();
     let mut plan =
         Plan { margin: start, moves: 0, bottleneck, actions: Vec::new(), profile: Vec::new(), if_stronger: None };
     let steps = expand(problem, &path);
@@ -89,7 +92,7 @@ pub fn write(domain: &Domain, ways: &mut Ways, carries: &[Carry], ends: &Ends) -
         };
         if let Some(arrived) = arrived.filter(|_| index == last) {
             // The goal itself bounds it from above, and where it does not reach that, nothing says when it is least.
-            margin.upper = margin.upper.min(arrived.upper).max(margin.lower);
+            margin.upper = margin.upper.min(arrived.margin.upper).max(margin.lower);
             phase = 1.0;
         }
         if let Some(so_far) = plan.margin {
@@ -102,6 +105,15 @@ pub fn write(domain: &Domain, ways: &mut Ways, carries: &[Carry], ends: &Ends) -
         step.apply(&mut configuration);
         let known = plan.margin.is_some();
         plan.actions.push(PlannedAction { action, margin: known.then_some(margin), phase: known.then_some(phase) });
+    }
+    // Only the two ends have values. Where one of them is all that the bounds leave of the plan's margin, it is
+    // attained there, and not where a bound is as low.
+    if let (Some(margin), Some(start), Some(arrived), Some(last)) =
+        (plan.margin, start, arrived, plan.actions.len().checked_sub(1))
+        && claims::bound(&margin, false).is_none()
+    {
+        let is_start = start.upper <= arrived.margin.upper;
+        plan.bottleneck = if is_start { at_start } else { Some(at_rest(Some(last), Some(arrived), &configuration)) };
     }
     plan
 }
