@@ -128,8 +128,12 @@ fn assess_pieces(
             return answer.finish();
         }
     }
-    let (bridges, cyclic): (Vec<usize>, Vec<usize>) =
-        (0..pieces.blocks.len()).partition(|&i| reductions.closed_form && pieces.blocks[i].links.len() == 1);
+    let (bridges, cyclic) = if reductions.closed_form {
+        let cyclic = (0..pieces.blocks.len()).filter(|&i| pieces.blocks[i].links.len() > 1);
+        (bridges(structure, &pieces.blocks), cyclic.collect())
+    } else {
+        (Vec::new(), (0..pieces.blocks.len()).collect::<Vec<_>>())
+    };
     for index in bridges {
         let bridge = assess_bridge(structure, &pieces.blocks[index], &loads);
         knowledge.note_bridge(pieces.blocks[index].links[0], &bridge.wrench);
@@ -183,6 +187,21 @@ fn assess_pieces(
     }
     answer.choose(question, &loads);
     answer.finish()
+}
+
+/// The blocks of one link, in the order of the links: what they read and write
+/// of a large structure is then mostly what comes next in memory.
+fn bridges(structure: &Structure, blocks: &[Block]) -> Vec<usize> {
+    let connections = structure.connections.len();
+    let mut by_link = vec![None; connections + structure.contacts.len()];
+    for (index, block) in blocks.iter().enumerate() {
+        match block.links[..] {
+            [Link::Connection(i)] => by_link[i] = Some(index),
+            [Link::Contact(i)] => by_link[connections + i] = Some(index),
+            _ => {}
+        }
+    }
+    by_link.into_iter().flatten().collect()
 }
 
 /// What other parts of the structure need at least: of the next one, it is enough to know that

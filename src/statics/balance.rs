@@ -13,10 +13,9 @@ use super::blocks::{Block, Link};
 use super::bracket::Problem;
 use super::conic::Iterate;
 use super::groups::{Cone, Group};
-use super::loads::BodyLoad;
 use super::maps::relative;
 use super::network::Network;
-use super::program::{Program, local_body};
+use super::program::Program;
 use super::second_order::determinant;
 use super::series::flexibility_root;
 use super::structure::Structure;
@@ -51,25 +50,6 @@ pub(super) fn wrenches(program: &Program, iterate: &Iterate) -> Vec<Wrench> {
     field
 }
 
-/// What every body still lacks for balance, about its centre of mass in W.
-pub(super) fn residuals(
-    structure: &Structure,
-    block: &Block,
-    program: &Program,
-    loads: &[BodyLoad],
-    field: &[Wrench],
-) -> Vec<Wrench> {
-    let mut lacking: Vec<Wrench> = block.bodies.iter().map(|&body| loads[body].wrench).collect();
-    for (frame, wrench) in program.frames.iter().zip(field) {
-        for (side, sign) in frame.sides() {
-            if let Some(i) = local_body(block, side) {
-                lacking[i] += frame.to_body(wrench, &structure.bodies[block.bodies[i]].com) * sign;
-            }
-        }
-    }
-    lacking
-}
-
 /// Contacts that carry less than `share` of the largest contact force: at a knife
 /// edge the others alone hold the structure, and what the solver leaves on these
 /// is noise.
@@ -90,7 +70,7 @@ pub(super) fn restore(problem: &Problem<'_>, iterate: &Iterate, field: &mut [Wre
     let mut springs = None;
     for _ in 0..ROUNDS {
         clip(structure, block, field);
-        let lacking = residuals(structure, block, program, loads, field);
+        let lacking = program.residuals(block, loads, field);
         let mut rhs = Vec::with_capacity(6 * lacking.len());
         for (wrench, factors) in lacking.iter().zip(program.row_factor.chunks_exact(6)) {
             rhs.extend(wrench.force.iter().chain(wrench.torque.iter()).zip(factors).map(|(w, f)| -w * f));
@@ -109,7 +89,7 @@ pub(super) fn restore(problem: &Problem<'_>, iterate: &Iterate, field: &mut [Wre
                 *metric = Matrix6::zeros();
             }
             let mut network = Network::new(program, in_series);
-            network.factorise(&metric, |link| flexibility_root(&metric[link]));
+            network.factorise(program, &metric, |link| flexibility_root(&metric[link]));
             (network, metric)
         });
         let mut changes: Vec<Option<Vector6<f64>>> = vec![None; field.len()];

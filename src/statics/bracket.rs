@@ -7,13 +7,11 @@
 
 use crate::spatial::{Twist, Wrench};
 
-use super::balance::residuals;
 use super::blocks::{Block, Link};
 use super::connector::{Connector, Model};
 use super::demand::{WrenchError, demand_at_most};
-use super::frame::LinkFrame;
 use super::loads::{BodyLoad, cross_size};
-use super::program::{Program, local_body};
+use super::program::Program;
 use super::second_order::norm;
 use super::structure::Structure;
 use super::tolerances::{BALANCE, DATA, ROUNDING};
@@ -61,10 +59,10 @@ impl Problem<'_> {
 
     /// What the imbalance of `field` is charged with in `twists`; `None` where it is too large.
     fn charge(&self, field: &[Wrench], twists: Option<&[Twist]>) -> Option<f64> {
-        let Self { structure, block, program, .. } = self;
+        let Self { block, program, .. } = self;
         let mut charge = 0.0;
         let through = self.forces_through(field);
-        for (i, lacking) in residuals(structure, block, program, self.loads, field).iter().enumerate() {
+        for (i, lacking) in program.residuals(block, self.loads, field).iter().enumerate() {
             let allowed = BALANCE * program.scales.force[i] + ROUNDING * through[i];
             let holds = lacking.force.norm() <= allowed && lacking.torque.norm() <= allowed * program.scales.lever[i];
             if !holds {
@@ -118,11 +116,10 @@ impl Problem<'_> {
     /// Sum of the sizes of all forces on every body of the block.
     pub(super) fn forces_through(&self, field: &[Wrench]) -> Vec<f64> {
         let mut through = vec![0.0; self.block.bodies.len()];
-        for (frame, wrench) in self.program.frames.iter().zip(field) {
-            for (side, _) in frame.sides() {
-                if let Some(i) = local_body(self.block, side) {
-                    through[i] += wrench.force.norm() + wrench.torque.norm() / self.program.scales.lever[i];
-                }
+        for (ends, wrench) in self.program.ends.iter().zip(field) {
+            let (force, torque) = (wrench.force.norm(), wrench.torque.norm());
+            for &i in ends.iter().flatten() {
+                through[i] += force + torque / self.program.scales.lever[i];
             }
         }
         through
@@ -131,21 +128,15 @@ impl Problem<'_> {
     /// How much each link moves in a twist field along every component in its frame, as the
     /// power it would take up if the force that typically flows through it acted there.
     pub(super) fn link_powers(&self, twists: &[Twist]) -> Vec<[f64; 6]> {
-        let Self { structure, block, program, .. } = self;
-        let scales = program.frames.iter().zip(&program.scales.link);
+        let program = self.program;
+        let scales = program.scales.link.iter().enumerate();
         scales
-            .map(|(frame, force)| {
-                let Twist { linear: v, angular: w } = frame.relative_twist(structure, |body| self.twist(twists, body));
-                let levers = frame.sides().into_iter().filter_map(|(side, _)| local_body(block, side));
-                let lever = levers.map(|i| program.scales.lever[i]).fold(0.0, f64::max);
+            .map(|(l, force)| {
+                let Twist { linear: v, angular: w } = program.relative_twist(l, twists);
+                let lever = program.lever_of(l);
                 [v.x, v.y, v.z, w.x * lever, w.y * lever, w.z * lever].map(|motion| force * motion.abs())
             })
             .collect()
-    }
-
-    /// The twist of a body of the structure, at rest outside the block.
-    fn twist(&self, twists: &[Twist], body: usize) -> Twist {
-        self.block.bodies.binary_search(&body).map_or(Twist::ZERO, |i| twists[i])
     }
 
     /// Lower bound on the utilisation from a twist per body of the block, of its
@@ -171,9 +162,9 @@ impl Problem<'_> {
         let Self { structure, block, program, .. } = self;
         let mut shares = Vec::with_capacity(block.links.len());
         let mut dissipation = 0.0;
-        for (&link, frame) in block.links.iter().zip(&program.frames) {
-            let relative = frame.relative_twist(structure, |body| self.twist(twists, body));
-            let error = self.velocity_error(frame, twists);
+        for (l, &link) in block.links.iter().enumerate() {
+            let relative = program.relative_twist(l, twists);
+            let error = self.velocity_error(l, twists);
             let share = match link {
                 Link::Contact(i) => {
                     let friction = structure.contacts[i].friction;
@@ -207,15 +198,14 @@ impl Problem<'_> {
     }
 
     /// Rounding of a link's relative twist.
-    fn velocity_error(&self, frame: &LinkFrame, twists: &[Twist]) -> VelocityError {
+    fn velocity_error(&self, link: usize, twists: &[Twist]) -> VelocityError {
+        let program = self.program;
         let (mut linear, mut angular) = (0.0, 0.0);
-        for (side, _) in frame.sides() {
-            if let Some(i) = local_body(self.block, side) {
-                let arm = frame.origin - self.structure.bodies[self.block.bodies[i]].com;
-                let twist = &twists[i];
-                linear += (twist.linear.abs() + cross_size(&arm, &twist.angular.abs())).norm();
-                angular += twist.angular.norm();
-            }
+        for &i in program.ends[link].iter().flatten() {
+            let arm = program.frames[link].origin - program.coms[i];
+            let twist = &twists[i];
+            linear += (twist.linear.abs() + cross_size(&arm, &twist.angular.abs())).norm();
+            angular += twist.angular.norm();
         }
         VelocityError { linear: ROUNDING * linear, angular: ROUNDING * angular }
     }

@@ -237,14 +237,14 @@ impl<const D: usize, const N: usize> Element<D, N> {
             return;
         }
         let at = |end: &Option<End<D, N>>| end.as_ref().and_then(|end| network.junction(end.body));
-        let matrix = network.matrix();
+        let pattern = network.pattern();
         if let [Some(one), Some(other)] = self.ends.each_ref().map(at)
-            && matrix.precedes(other, one)
+            && pattern.precedes(other, one)
         {
             self.ends.swap(0, 1);
         }
         let [one, other] = self.ends.each_ref().map(at);
-        let slot = |row: Option<usize>, column: Option<usize>| Some(matrix.slot(row?, column?));
+        let slot = |row: Option<usize>, column: Option<usize>| Some(pattern.slot(row?, column?));
         self.slots = [slot(one, one), slot(other, other), slot(other, one)];
     }
 

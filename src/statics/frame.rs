@@ -45,21 +45,28 @@ impl LinkFrame {
         [(self.plus, 1.0), (self.minus, -1.0)]
     }
 
-    /// A wrench in the frame, about its origin, as one in W about `com`.
-    pub(super) fn to_body(&self, local: &Wrench, com: &Vec3) -> Wrench {
-        Wrench::new(self.axes * local.force, self.axes * local.torque).moved(&(self.origin - com))
+    /// A wrench in the frame as one in W, still about the frame's origin.
+    pub(super) fn in_world(&self, local: &Wrench) -> Wrench {
+        Wrench::new(self.axes * local.force, self.axes * local.torque)
     }
 
     /// Twist of the plus side relative to the minus side at the origin, in the
     /// frame. `twist` gives a body's twist at its centre of mass in W.
     pub(super) fn relative_twist(&self, structure: &Structure, twist: impl Fn(usize) -> Twist) -> Twist {
-        let mut relative = Twist::ZERO;
-        for (side, sign) in self.sides() {
-            if let Vertex::Body(i) = side {
-                let here = twist(i).moved(&(self.origin - structure.bodies[i].com));
-                relative.linear += here.linear * sign;
-                relative.angular += here.angular * sign;
-            }
+        let here = |vertex: Vertex| match vertex {
+            Vertex::Body(i) => Some(twist(i).moved(&(self.origin - structure.bodies[i].com))),
+            Vertex::Ground => None,
+        };
+        self.apart([here(self.plus), here(self.minus)])
+    }
+
+    /// Twist of the plus side relative to the minus side, in the frame, of their twists at the
+    /// origin in W; `None` rests.
+    pub(super) fn apart(&self, [plus, minus]: [Option<Twist>; 2]) -> Twist {
+        let mut relative = plus.unwrap_or(Twist::ZERO);
+        if let Some(minus) = minus {
+            relative.linear -= minus.linear;
+            relative.angular -= minus.angular;
         }
         Twist::new(self.axes.tr_mul(&relative.linear), self.axes.tr_mul(&relative.angular))
     }

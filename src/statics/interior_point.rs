@@ -9,7 +9,7 @@
 
 use super::conic::Iterate;
 use super::network::Network;
-use super::parts::{Part, parts};
+use super::parts::parts;
 use super::planar::{NotPlanar, Planar};
 use super::program::Program;
 use super::reductions::Reductions;
@@ -66,7 +66,7 @@ impl<'p> InteriorPoint<'p> {
         let tie = |row: usize| program.preload[row];
         let (system, residuals) = match Planar::new(program, &parts, reductions) {
             Ok(planar) => {
-                let network = Network::plain(bodies, pairs(&planar.parts));
+                let network = Network::plain(program.pattern());
                 let preload = planar.preload.clone();
                 let mut system = System::new(&planar.parts, &planar.loads, preload, tie, network, inset, start);
                 let residuals = system.compare();
@@ -75,8 +75,7 @@ impl<'p> InteriorPoint<'p> {
             Err(why) => {
                 let by_body = |rows: &[f64]| rows[..6 * bodies].as_chunks::<6>().0.to_vec();
                 let in_series = why == NotPlanar::Chains;
-                let network =
-                    if in_series { Network::new(program, true) } else { Network::plain(bodies, pairs(&parts)) };
+                let network = if in_series { Network::new(program, true) } else { Network::plain(program.pattern()) };
                 let (loads, preload) = (by_body(&program.load), by_body(&program.preload));
                 let mut system = System::new(&parts, &loads, preload, tie, network, inset, start);
                 let residuals = system.compare();
@@ -132,14 +131,6 @@ impl<'p> InteriorPoint<'p> {
         respect_unlimited(self.program, &mut iterate.v);
         iterate
     }
-}
-
-/// The pairs of bodies that act on each other.
-fn pairs<const D: usize>(parts: &[Part<D>]) -> impl Iterator<Item = (usize, usize)> {
-    parts.iter().filter_map(|part| match &part.ends {
-        [Some((one, _)), Some((other, _))] => Some((*one, *other)),
-        _ => None,
-    })
 }
 
 /// One step from where `system` has come to; where that is, if it got anywhere.

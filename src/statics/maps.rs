@@ -55,6 +55,9 @@ impl Side {
     }
 }
 
+/// The bodies at a link's plus and minus side, by their index in the block; `None` where it is held.
+pub(super) type Ends = [Option<usize>; 2];
+
 /// The ends of a link that need balance: the plus side, then the minus side.
 pub(super) type Sides = [Option<Side>; 2];
 

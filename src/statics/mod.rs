@@ -35,6 +35,7 @@ mod contact_motion;
 mod demand;
 mod distribution;
 mod element;
+mod elimination;
 mod explain;
 mod face_program;
 mod families;
@@ -73,6 +74,7 @@ mod structure;
 mod system;
 mod tolerances;
 mod validate;
+mod variables;
 
 pub use assess::{assess, assess_reduced};
 pub use assessment::{Assessment, Bracket, ConnectionState, Distribution, LeftOut, Question, Verdict};

@@ -10,10 +10,13 @@
 //!
 //! Knows where links act and how stiff they are, nothing of cones.
 
+use std::sync::Arc;
+
 use nalgebra::{Matrix6, SMatrix, SVector};
 
 use super::chains::{Between, Chain, End, Passage, incident, walk, within_chains};
-use super::maps::Side;
+use super::elimination::Pattern;
+use super::maps::Ends;
 use super::program::Program;
 use super::series::{Stacked, inverse};
 use super::stiffness::{Matrix, Stiffness};
@@ -42,10 +45,10 @@ impl<const D: usize> Condensed<D> {
 }
 
 /// A link that is no part of a chain.
-struct Single<const D: usize> {
+struct Single {
     link: usize,
-    /// The junctions at its ends, in the order of elimination.
-    ends: [End<D>; 2],
+    /// Its sides in the order of elimination.
+    sides: [usize; 2],
     /// Blocks of the matrix: of the first end, of the second, and the rows of the second
     /// by the columns of the first.
     slots: [Option<usize>; 3],
@@ -55,7 +58,7 @@ struct Single<const D: usize> {
 pub(super) struct Network<const D: usize> {
     /// Number of each body among the junctions.
     junction: Vec<Option<usize>>,
-    singles: Vec<Single<D>>,
+    singles: Vec<Single>,
     chains: Vec<Chain<D>>,
     matrix: Stiffness<D>,
 }
@@ -76,41 +79,51 @@ impl Network<6> {
                 })
             })
             .collect();
-        let mut used = vec![false; program.sides.len()];
-        let (mut chains, mut singles) = (Vec::new(), Vec::with_capacity(program.sides.len()));
-        for (link, sides) in program.sides.iter().enumerate() {
+        let joined = |ends: &Ends| ends.map(|end| end.and_then(|body| junction[body]));
+        let mut used = vec![false; program.ends.len()];
+        let (mut chains, mut singles) = (Vec::new(), Vec::with_capacity(program.ends.len()));
+        for (link, bodies) in program.ends.iter().enumerate() {
             // Begin where a chain begins: at a junction or the ground.
-            let ends = sides.each_ref().map(|side| side.as_ref().is_none_or(|s| junction[s.body].is_some()));
+            let ends = bodies.map(|body| body.is_none_or(|body| junction[body].is_some()));
             match ends {
-                [true, true] => {
-                    let end = |side: &Option<Side>| side.as_ref().and_then(|s| Some((junction[s.body]?, s.map)));
-                    singles.push(Single { link, ends: sides.each_ref().map(end), slots: [None; 3] });
-                }
+                [true, true] => singles.push(Single { link, sides: [0, 1], slots: [None; 3] }),
                 [false, false] => {}
                 _ if used[link] => {}
                 [start, _] => chains.push(walk(program, &junction, &incident, &mut used, link, usize::from(!start))),
             }
         }
-        let junctions = |ends: &[End<6>; 2]| ends.each_ref().map(|end| end.as_ref().map(|(at, _)| *at));
-        let joined = chains.iter().map(|chain| junctions(&chain.ends));
-        let pairs = singles.iter().map(|single| junctions(&single.ends)).chain(joined);
-        let matrix = Stiffness::new(count, pairs.filter_map(|[a, b]| Some((a?, b?))));
+        let pattern = if count == bodies {
+            program.pattern().clone()
+        } else {
+            let by_chains = chains.iter().map(|chain| chain.ends.each_ref().map(|end| end.as_ref().map(|(at, _)| *at)));
+            let pairs = singles.iter().map(|single| joined(&program.ends[single.link])).chain(by_chains);
+            Arc::new(Pattern::new(count, pairs.filter_map(|[a, b]| Some((a?, b?)))))
+        };
         for single in &mut singles {
-            single.place(&matrix);
+            single.place(joined(&program.ends[single.link]), &pattern);
         }
-        Self { junction, singles, chains, matrix }
+        Self { junction, singles, chains, matrix: Stiffness::new(pattern) }
     }
 
-    /// Factorises for links of which `stiffness` is K, in their own frames, and
-    /// `flexibility` the root G of its inverse, `K G G' = 1`.
-    pub(super) fn factorise(&mut self, stiffness: &[Matrix6<f64>], flexibility: impl Fn(usize) -> Matrix6<f64>) {
+    /// Factorises for the links of `program`, which the network is of: `stiffness` is K, in their own
+    /// frames, and `flexibility` the root G of its inverse, `K G G' = 1`.
+    pub(super) fn factorise(
+        &mut self,
+        program: &Program,
+        stiffness: &[Matrix6<f64>],
+        flexibility: impl Fn(usize) -> Matrix6<f64>,
+    ) {
         self.matrix.clear();
-        for Single { link, ends, slots } in &self.singles {
-            let force = |end: &End<6>| end.as_ref().map(|(_, map)| force(map, &stiffness[*link]));
-            let forces = ends.each_ref().map(force);
-            for (slot, [row, column]) in slots.iter().zip([[0, 0], [1, 1], [1, 0]]) {
-                if let (Some(slot), Some(force), Some((_, map))) = (slot, &forces[row], &ends[column]) {
-                    add_stiffness(self.matrix.block(*slot), force, map);
+        for Single { link, sides: [first, second], slots: [one, other, across] } in &self.singles {
+            let (sides, stiffness) = (&program.sides[*link], &stiffness[*link]);
+            if let (Some(slot), Some(side)) = (one, &sides[*first]) {
+                add_stiffness(self.matrix.block(*slot), &force(&side.map, stiffness), &side.map);
+            }
+            if let (Some(slot), Some(side)) = (other, &sides[*second]) {
+                let force = force(&side.map, stiffness);
+                add_stiffness(self.matrix.block(*slot), &force, &side.map);
+                if let (Some(slot), Some(side)) = (across, &sides[*first]) {
+                    add_stiffness(self.matrix.block(*slot), &force, &side.map);
                 }
             }
         }
@@ -119,17 +132,18 @@ impl Network<6> {
     }
 }
 
-impl<const D: usize> Single<D> {
-    /// Puts its ends into the order of elimination, and notes its places in the matrix.
-    fn place(&mut self, matrix: &Stiffness<D>) {
-        let junctions = |ends: &[End<D>; 2]| ends.each_ref().map(|end| end.as_ref().map(|(at, _)| *at));
-        if let [Some(one), Some(other)] = junctions(&self.ends)
-            && matrix.precedes(other, one)
+impl Single {
+    /// Puts its sides, which are at `junctions`, into the order of elimination, and notes its places in
+    /// the matrix.
+    fn place(&mut self, mut junctions: [Option<usize>; 2], pattern: &Pattern) {
+        if let [Some(one), Some(other)] = junctions
+            && pattern.precedes(other, one)
         {
-            self.ends.swap(0, 1);
+            self.sides.swap(0, 1);
+            junctions.swap(0, 1);
         }
-        let [one, other] = junctions(&self.ends);
-        let slot = |row: Option<usize>, column: Option<usize>| Some(matrix.slot(row?, column?));
+        let [one, other] = junctions;
+        let slot = |row: Option<usize>, column: Option<usize>| Some(pattern.slot(row?, column?));
         self.slots = [slot(one, one), slot(other, other), slot(other, one)];
     }
 }
@@ -165,10 +179,15 @@ fn add_stiffness(block: &mut Matrix<6>, force: &Matrix<6>, map: &Matrix6<f64>) {
 }
 
 impl<const D: usize> Network<D> {
-    /// A network of bodies of which `pairs` are joined, without chains.
-    pub(super) fn plain(bodies: usize, pairs: impl Iterator<Item = (usize, usize)>) -> Self {
-        let matrix = Stiffness::new(bodies, pairs);
-        Self { junction: (0..bodies).map(Some).collect(), singles: Vec::new(), chains: Vec::new(), matrix }
+    /// A network of bodies that are joined as in `pattern`, without chains.
+    pub(super) fn plain(pattern: &Arc<Pattern>) -> Self {
+        let junction = (0..pattern.bodies()).map(Some).collect();
+        Self { junction, singles: Vec::new(), chains: Vec::new(), matrix: Stiffness::new(pattern.clone()) }
+    }
+
+    /// Where the blocks of the matrix over junctions are.
+    pub(super) fn pattern(&self) -> &Arc<Pattern> {
+        self.matrix.pattern()
     }
 
     /// The number of a body among the junctions; `None` within a chain.
@@ -179,11 +198,6 @@ impl<const D: usize> Network<D> {
     /// The links of all chains.
     pub(super) fn links_in_chains(&self) -> impl Iterator<Item = usize> {
         self.chains.iter().flat_map(|chain| chain.links.iter().map(|passage| passage.link))
-    }
-
-    /// The matrix over junctions.
-    pub(super) fn matrix(&self) -> &Stiffness<D> {
-        &self.matrix
     }
 
     /// The matrix over junctions, to be filled before [`factorise_with`](Self::factorise_with).
@@ -242,12 +256,12 @@ impl<const D: usize> Network<D> {
 
     /// Bodies that are not within a chain.
     pub(super) fn junctions(&self) -> usize {
-        self.matrix.bodies()
+        self.pattern().bodies()
     }
 
     /// The loads `rows` (D per body) as the junctions feel them.
     pub(super) fn condense(&self, rows: &[f64]) -> Condensed<D> {
-        let mut junctions = vec![0.0; D * self.matrix.bodies()];
+        let mut junctions = vec![0.0; D * self.junctions()];
         for (number, body) in self.junction.iter().zip(rows.chunks_exact(D)) {
             if let Some(k) = *number {
                 junctions[D * k..D * k + D].copy_from_slice(body);

@@ -16,14 +16,17 @@
 //! Rows and columns are scaled to forces and levers of the bodies and links they
 //! belong to (see `scales`).
 
+use std::sync::{Arc, OnceLock};
+
 use crate::spatial::{Twist, Vec3, Wrench};
 
 use super::blocks::{Block, Link, Vertex};
 use super::connector::Model;
+use super::elimination::Pattern;
 use super::frame::LinkFrame;
-use super::groups::{Cone, Form, Group};
+use super::groups::Group;
 use super::loads::BodyLoad;
-use super::maps::{Side, Sides};
+use super::maps::{Ends, Side, Sides};
 use super::scales::Scales;
 use super::structure::Structure;
 
@@ -44,8 +47,9 @@ pub(super) struct Program {
     pub groups: Vec<Group>,
     /// Number of variables, t not among them.
     pub variables: usize,
-    /// The ends of each link.
+    /// The ends of each link, and the bodies there.
     pub sides: Vec<Sides>,
+    pub ends: Vec<Ends>,
     /// Scaled column of t, by row.
     pub preload: Vec<f64>,
     /// Wrench in each link's frame that t = 1 stands for (minus the preload).
@@ -67,9 +71,11 @@ pub(super) struct Program {
     /// the last digits (that of a face is the inverse of a sum over its points).
     pub in_series: Vec<bool>,
     /// Share of its strength that each link may use.
-    shares: Vec<f64>,
+    pub shares: Vec<f64>,
     /// Whether that is so whatever t is.
-    held: Vec<bool>,
+    pub held: Vec<bool>,
+    /// Found when it is first asked for.
+    pattern: OnceLock<Arc<Pattern>>,
 }
 
 /// Smallest force scale of a body, relative to the largest: a body without weight
@@ -144,23 +150,23 @@ impl Program {
     /// Frames, scales and loads without any variable: what evaluating bounds takes.
     pub(super) fn unstated(structure: &Structure, block: &Block, loads: &[BodyLoad], floor: f64) -> Self {
         let frames: Vec<LinkFrame> = block.links.iter().map(|&link| LinkFrame::new(structure, link)).collect();
-        let scales = Scales::new(structure, block, &frames, loads, floor);
+        let ends: Vec<Ends> =
+            frames.iter().map(|frame| [local_body(block, frame.plus), local_body(block, frame.minus)]).collect();
+        let coms: Vec<Vec3> = block.bodies.iter().map(|&body| structure.bodies[body].com).collect();
+        let scales = Scales::new(block, &coms, &frames, &ends, loads, floor);
         let mut row_factor = Vec::with_capacity(6 * block.bodies.len());
         for (force, lever) in scales.force.iter().zip(&scales.lever) {
             let (force, torque) = (1.0 / force, 1.0 / (force * lever));
             row_factor.extend([force, force, force, torque, torque, torque]);
         }
         let load = scaled(block, loads, &row_factor);
-        let sides = frames
-            .iter()
-            .map(|frame| {
-                frame.sides().map(|(side, sign)| {
-                    let i = local_body(block, side)?;
-                    let com = &structure.bodies[block.bodies[i]].com;
-                    Some(Side::new(frame, i, sign, com, [row_factor[6 * i], row_factor[6 * i + 3]]))
-                })
-            })
-            .collect();
+        let mut sides: Vec<Sides> = Vec::with_capacity(frames.len());
+        for (frame, &[plus, minus]) in frames.iter().zip(&ends) {
+            let side = |end: Option<usize>, sign: f64| {
+                end.map(|i| Side::new(frame, i, sign, &coms[i], [row_factor[6 * i], row_factor[6 * i + 3]]))
+            };
+            sides.push([side(plus, 1.0), side(minus, -1.0)]);
+        }
         let in_series = block.links.iter().map(|&link| match link {
             Link::Connection(i) => match &structure.connectors[structure.connections[i].connector].model {
                 Model::Patch { .. } => false,
@@ -174,6 +180,7 @@ impl Program {
             groups: Vec::new(),
             variables: 0,
             sides,
+            ends,
             preload: vec![0.0; load.len()],
             preload_local: vec![Wrench::ZERO; block.links.len()],
             held_local: vec![Wrench::ZERO; block.links.len()],
@@ -182,11 +189,29 @@ impl Program {
             t_scale: 1.0,
             scales,
             frames,
-            coms: block.bodies.iter().map(|&body| structure.bodies[body].com).collect(),
+            coms,
             in_series,
             shares: vec![1.0; block.links.len()],
             held: vec![false; block.links.len()],
+            pattern: OnceLock::new(),
         }
+    }
+
+    /// Where the blocks of matrices on the bodies are, of which links join two each.
+    pub(super) fn pattern(&self) -> &Arc<Pattern> {
+        self.pattern.get_or_init(|| Arc::new(Pattern::new(self.coms.len(), self.joined())))
+    }
+
+    /// Takes over the pattern of a block of the same bodies, if it has all that this one needs.
+    pub(super) fn take_pattern(&self, pattern: &Arc<Pattern>) {
+        if pattern.bodies() == self.coms.len() && self.joined().all(|(i, j)| pattern.joins(i, j)) {
+            self.pattern.get_or_init(|| pattern.clone());
+        }
+    }
+
+    /// The pairs of bodies that links join.
+    fn joined(&self) -> impl Iterator<Item = (usize, usize)> {
+        self.ends.iter().filter_map(|&[one, other]| Some((one?, other?)))
     }
 
     pub(super) fn rows(&self) -> usize {
@@ -202,6 +227,34 @@ impl Program {
         bodies.map(|i| Twist::new(part(i, 0), part(i, 3))).collect()
     }
 
+    /// What every body lacks for balance, about its centre of mass in W, under `loads` by the
+    /// structure's bodies and with a wrench per link in its frame.
+    pub(super) fn residuals(&self, block: &Block, loads: &[BodyLoad], field: &[Wrench]) -> Vec<Wrench> {
+        let mut lacking: Vec<Wrench> = block.bodies.iter().map(|&body| loads[body].wrench).collect();
+        self.push(field, &mut lacking);
+        lacking
+    }
+
+    /// Adds what the links push the bodies with, about their centres of mass in W, to `bodies`.
+    pub(super) fn push(&self, field: &[Wrench], bodies: &mut [Wrench]) {
+        for ((frame, &[plus, minus]), wrench) in self.frames.iter().zip(&self.ends).zip(field) {
+            let here = frame.in_world(wrench);
+            if let Some(i) = plus {
+                bodies[i] += here.moved(&(frame.origin - self.coms[i]));
+            }
+            if let Some(i) = minus {
+                bodies[i] -= here.moved(&(frame.origin - self.coms[i]));
+            }
+        }
+    }
+
+    /// The twist of a link's plus side relative to its minus side, in its frame, of a twist per
+    /// body of the block, of its centre of mass in W. What is not in the block rests.
+    pub(super) fn relative_twist(&self, link: usize, twists: &[Twist]) -> Twist {
+        let frame = &self.frames[link];
+        frame.apart(self.ends[link].map(|end| end.map(|i| twists[i].moved(&(frame.origin - self.coms[i])))))
+    }
+
     /// Largest of force over strength: about the utilisation to expect.
     fn typical_utilisation(&self, structure: &Structure, block: &Block) -> f64 {
         let ratios = block.links.iter().zip(&self.scales.link).filter_map(|(link, force)| match link {
@@ -215,149 +268,9 @@ impl Program {
         if largest > 0.0 { largest } else { 1.0 }
     }
 
-    fn add_link(&mut self, structure: &Structure, index: usize, link: Link) {
-        let (force, share) = (self.scales.link[index], self.shares[index]);
-        match link {
-            Link::Contact(i) => {
-                self.add_friction_cone(index, structure.contacts[i].friction, [0.0; 2], force);
-            }
-            Link::Connection(i) => {
-                let connector = &structure.connectors[structure.connections[i].connector];
-                let strength = connector.strength * share;
-                match &connector.model {
-                    Model::Cone { friction: [a, b], radius: [c, d, e] } => {
-                        let axes = [(2, 1.0), (0, *a), (1, *b), (3, *c), (4, *d), (5, *e)];
-                        self.add_group(index, Cone::Lorentz, Form::Axes(axes), 6, force);
-                        self.rest_at(strength);
-                        self.add_preload(index, Wrench::new(-Vec3::z() * strength, Vec3::zeros()));
-                    }
-                    Model::Patch { friction, points } => {
-                        for &point in points {
-                            self.add_friction_cone(index, *friction, point, force);
-                            self.rest_at(strength / points.len() as f64);
-                        }
-                        self.add_preload(index, Wrench::new(-Vec3::z() * strength, Vec3::zeros()));
-                    }
-                    Model::Box { shear, tension, compression, bending, torsion } => {
-                        let limits = [
-                            (shear[0], shear[0]),
-                            (shear[1], shear[1]),
-                            (*tension, *compression),
-                            (bending[0], bending[0]),
-                            (bending[1], bending[1]),
-                            (*torsion, *torsion),
-                        ];
-                        self.add_box(index, &limits.map(|(opening, closing)| (opening * share, closing * share)));
-                    }
-                }
-            }
-        }
-    }
-
-    /// The force of one contact point in the plane z = 0 of the link's frame.
-    fn add_friction_cone(&mut self, link: usize, friction: f64, at: [f64; 2], scale: f64) {
-        let form = Form::Point { at, friction };
-        if friction > 0.0 {
-            self.add_group(link, Cone::Lorentz, form, 3, scale);
-        } else {
-            self.add_group(link, Cone::NonNegative, form, 1, scale);
-        }
-    }
-
-    fn add_box(&mut self, link: usize, limits: &[(f64, f64); 6]) {
-        let lever = self.lever_of(link);
-        let mut preload = [0.0; 6];
-        for (component, &(negative, positive)) in limits.iter().enumerate() {
-            let scale = self.scales.link[link] * if component < 3 { 1.0 } else { lever };
-            let along = |factor| Form::Axes([(component, factor); 6]);
-            match (negative.is_finite(), positive.is_finite()) {
-                (false, false) => {
-                    self.add_group(link, Cone::Free, along(1.0), 1, scale);
-                }
-                (true, false) => {
-                    self.add_group(link, Cone::NonNegative, along(1.0), 1, scale);
-                    self.rest_at(negative);
-                    preload[component] -= negative;
-                }
-                (false, true) => {
-                    self.add_group(link, Cone::NonNegative, along(-1.0), 1, scale);
-                    self.rest_at(positive);
-                    preload[component] += positive;
-                }
-                (true, true) if negative == 0.0 && positive == 0.0 => {}
-                (true, true) => {
-                    let slack = self.add_group(link, Cone::NonNegative, along(1.0), 1, scale);
-                    self.rest_at(negative);
-                    preload[component] -= negative;
-                    self.tie(link, slack, scale, negative + positive);
-                    self.rest_at(positive);
-                }
-            }
-        }
-        let [a, b, c, d, e, f] = preload;
-        self.add_preload(link, Wrench::new(Vec3::new(a, b, c), Vec3::new(d, e, f)));
-    }
-
-    /// Adds the row `p + q = t width` that ties a box component's two slacks.
-    fn tie(&mut self, link: usize, slack: usize, scale: f64, width: f64) {
-        let row = self.rows();
-        let width = -width / scale;
-        let (fixed, growing) = if self.held[link] { (width, 0.0) } else { (0.0, width * self.t_scale) };
-        self.load.push(fixed);
-        self.row_factor.push(1.0 / scale);
-        self.preload.push(growing);
-        let one = self.groups.last_mut().expect("the slack that is tied");
-        one.tie_row = Some(row);
-        let other = self.add_group(link, Cone::NonNegative, Form::Slack, 1, scale);
-        let other = self.groups.last_mut().filter(|group| group.first == other).expect("just added");
-        (other.tie_row, other.ties) = (Some(row), Some(slack));
-    }
-
     /// Longest lever of a link's bodies.
     pub(super) fn lever_of(&self, link: usize) -> f64 {
         self.sides[link].iter().flatten().map(|side| self.scales.lever[side.body]).fold(0.0, f64::max)
-    }
-
-    /// Adds a group of variables; returns the first one's index.
-    fn add_group(&mut self, link: usize, cone: Cone, form: Form, len: usize, scale: f64) -> usize {
-        let first = self.variables;
-        self.variables += len;
-        self.groups.push(Group { cone, first, len, link, form, scale, rest: 0.0, tie_row: None, ties: None });
-        first
-    }
-
-    /// Says at what `strength` the group just added rests.
-    fn rest_at(&mut self, strength: f64) {
-        if let (Purpose::Utilisation, Some(group)) = (self.purpose, self.groups.last_mut()) {
-            group.rest = strength * self.t_scale / group.scale;
-        }
-    }
-
-    fn add_preload(&mut self, link: usize, local: Wrench) {
-        if local == Wrench::ZERO {
-            return;
-        }
-        match self.purpose {
-            Purpose::Utilisation if self.held[link] => {
-                let Wrench { force: f, torque: m } = local;
-                for side in self.sides[link].iter().flatten() {
-                    side.push(&[f.x, f.y, f.z, m.x, m.y, m.z], &mut self.load);
-                }
-                self.held_local[link] = local;
-            }
-            Purpose::Utilisation => {
-                let Wrench { force: f, torque: m } = local * self.t_scale;
-                for side in self.sides[link].iter().flatten() {
-                    side.push(&[f.x, f.y, f.z, m.x, m.y, m.z], &mut self.preload);
-                }
-                self.preload_local[link] = local;
-            }
-            // A preload of any size, along z as in every model that has one.
-            Purpose::Support => {
-                let along = Form::Axes([(2, -1.0); 6]);
-                self.add_group(link, Cone::NonNegative, along, 1, self.scales.link[link]);
-            }
-        }
     }
 
     /// The column of A of a group's variable `k`, as `(row, entry)`.

@@ -302,7 +302,8 @@ mod tests {
                 let frame = LinkFrame::new(&original, Link::Connection(i));
                 for (side, sign) in frame.sides() {
                     if let Vertex::Body(body) = side {
-                        let push = frame.to_body(&state.wrench, &original.bodies[body].com) * sign;
+                        let push =
+                            frame.in_world(&state.wrench).moved(&(frame.origin - original.bodies[body].com)) * sign;
                         sums[body].wrench += push;
                     }
                 }

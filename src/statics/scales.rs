@@ -10,12 +10,12 @@ use std::collections::VecDeque;
 
 use smallvec::SmallVec;
 
-use crate::spatial::Wrench;
+use crate::spatial::{Vec3, Wrench};
 
-use super::blocks::{Block, Vertex};
+use super::blocks::Block;
 use super::frame::LinkFrame;
 use super::loads::BodyLoad;
-use super::structure::Structure;
+use super::maps::Ends;
 
 /// Smallest lever, as a fraction of the longest in the block.
 const SHORTEST: f64 = 3e-5;
@@ -73,32 +73,27 @@ pub(super) struct Scales {
 }
 
 impl Scales {
-    /// `frames` are those of the block's links. At least one load must not be zero.
+    /// `coms` are the centres of mass of the block's bodies, `frames` and `ends` are those of its links. At least one load must not be zero.
     /// No force is less than `floor` times the largest, and that of a body that holds
     /// nothing is what it may have to pass on.
     pub(super) fn new(
-        structure: &Structure,
         block: &Block,
+        coms: &[Vec3],
         frames: &[LinkFrame],
+        ends: &[Ends],
         loads: &[BodyLoad],
         floor: f64,
     ) -> Self {
-        let local = |vertex: Vertex| match vertex {
-            Vertex::Body(i) if vertex != block.root => block.bodies.binary_search(&i).ok(),
-            _ => None,
-        };
         let count = block.bodies.len();
-        let com = |i: usize| structure.bodies[block.bodies[i]].com;
         let mut lever = vec![0.0_f64; count];
         let mut neighbours: Vec<Neighbours> = vec![SmallVec::new(); count];
         let mut queue = VecDeque::new();
         let mut parent: Vec<Option<(usize, Option<usize>)>> = vec![None; count];
         let mut seen = vec![false; count];
-        for (l, frame) in frames.iter().enumerate() {
-            let (plus, minus) = (local(frame.plus), local(frame.minus));
+        for (l, (frame, &[plus, minus])) in frames.iter().zip(ends).enumerate() {
             for (at, other) in [(plus, minus), (minus, plus)] {
                 if let Some(i) = at {
-                    lever[i] = lever[i].max((frame.origin - com(i)).norm());
+                    lever[i] = lever[i].max((frame.origin - coms[i]).norm());
                     neighbours[i].push((l, other));
                     if other.is_none() && !seen[i] {
                         seen[i] = true;
@@ -134,20 +129,18 @@ impl Scales {
         for &i in order.iter().rev() {
             force[i] = force[i].max(flow[i].force.norm() + flow[i].torque.norm() / lever[i]);
             if let Some((_, Some(above))) = parent[i] {
-                let carried = flow[i].moved(&(com(i) - com(above)));
+                let carried = flow[i].moved(&(coms[i] - coms[above]));
                 flow[above] += carried;
             }
         }
         let largest = force.iter().copied().fold(0.0, f64::max);
         pass_through(&mut force, largest, floor * largest, &neighbours);
-        let link = frames
-            .iter()
-            .map(|frame| {
-                let through = |vertex| local(vertex).map_or(0.0, |i| force[i]);
-                let (plus, minus) = (through(frame.plus), through(frame.minus));
-                if plus == 0.0 || minus == 0.0 { plus.max(minus) } else { plus.min(minus) }
-            })
-            .collect();
+        let through = |end: Option<usize>| end.map_or(0.0, |i| force[i]);
+        let link = ends.iter().map(|ends| {
+            let [plus, minus] = ends.map(through);
+            if plus == 0.0 || minus == 0.0 { plus.max(minus) } else { plus.min(minus) }
+        });
+        let link = link.collect();
         Self { force, lever, link }
     }
 }

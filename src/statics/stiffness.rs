@@ -2,13 +2,13 @@
 //!
 //! The normal equations of a block's program have one D x D block per body, with
 //! D balances each, and one per pair of bodies that a link joins, like the
-//! stiffness matrix of a frame of beams. Bodies are eliminated in order of least
-//! degree; the pattern is found once and serves every matrix on the same graph.
+//! stiffness matrix of a frame of beams.
 //!
-//! Knows graphs and matrices, nothing of wrenches or cones.
+//! Knows matrices on a pattern, nothing of wrenches or cones.
 
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
+use std::sync::Arc;
+
+use super::elimination::Pattern;
 
 /// A D x D matrix, by columns.
 pub(super) type Matrix<const D: usize> = [[f64; D]; D];
@@ -22,45 +22,15 @@ const AT_REST: f64 = 1e100;
 
 /// A symmetric block matrix on the bodies of a graph, then its Cholesky factor.
 pub(super) struct Stiffness<const D: usize> {
-    /// Position of each body in the order of elimination.
-    position: Vec<usize>,
-    /// Per position: index of its diagonal block; those below it follow. One more for the end.
-    first: Vec<usize>,
-    /// Per block its row; diagonal blocks have their own position.
-    rows: Vec<usize>,
-    /// Per position: where the products of each pair of blocks below its diagonal go.
-    targets: Vec<usize>,
+    pattern: Arc<Pattern>,
     blocks: Vec<Matrix<D>>,
 }
 
 impl<const D: usize> Stiffness<D> {
-    /// The zero matrix for `bodies` bodies of which `pairs` are joined.
-    pub(super) fn new(bodies: usize, pairs: impl Iterator<Item = (usize, usize)>) -> Self {
-        let (order, later) = least_degree(bodies, pairs);
-        let mut position = vec![0; bodies];
-        for (k, &body) in order.iter().enumerate() {
-            position[body] = k;
-        }
-        let mut first = Vec::with_capacity(bodies + 1);
-        let mut rows = Vec::new();
-        for (k, neighbours) in later.iter().enumerate() {
-            first.push(rows.len());
-            rows.push(k);
-            rows.extend(neighbours.iter().map(|&body| position[body]));
-            rows[first[k] + 1..].sort_unstable();
-        }
-        first.push(rows.len());
-        let blocks = vec![[[0.0; D]; D]; rows.len()];
-        let mut matrix = Self { position, first, rows, targets: Vec::new(), blocks };
-        for k in 0..bodies {
-            let below = matrix.first[k] + 1..matrix.first[k + 1];
-            for n in below.clone() {
-                for m in n..below.end {
-                    matrix.targets.push(matrix.index(matrix.rows[m], matrix.rows[n]));
-                }
-            }
-        }
-        matrix
+    /// The zero matrix on `pattern`.
+    pub(super) fn new(pattern: Arc<Pattern>) -> Self {
+        let blocks = vec![[[0.0; D]; D]; pattern.rows.len()];
+        Self { pattern, blocks }
     }
 
     /// Sets every entry to zero.
@@ -71,16 +41,16 @@ impl<const D: usize> Stiffness<D> {
     /// Adds a block at the row of body `i` and the column of body `j`; of a
     /// diagonal block, the lower triangle counts.
     pub(super) fn add(&mut self, i: usize, j: usize, block: &Matrix<D>) {
-        let (row, at) = (self.position[i], self.position[j]);
+        let (row, at) = (self.pattern.position[i], self.pattern.position[j]);
         if row >= at {
-            let index = self.index(row, at);
+            let index = self.pattern.index(row, at);
             for (target, column) in self.blocks[index].iter_mut().zip(block) {
                 for (entry, value) in target.iter_mut().zip(column) {
                     *entry += value;
                 }
             }
         } else {
-            let index = self.index(at, row);
+            let index = self.pattern.index(at, row);
             for (c, target) in self.blocks[index].iter_mut().enumerate() {
                 for (entry, column) in target.iter_mut().zip(block) {
                     *entry += column[c];
@@ -89,15 +59,9 @@ impl<const D: usize> Stiffness<D> {
         }
     }
 
-    /// Whether body `i` is eliminated before body `j`.
-    pub(super) fn precedes(&self, i: usize, j: usize) -> bool {
-        self.position[i] < self.position[j]
-    }
-
-    /// Where the block at the row of body `i` and the column of body `j`, which does
-    /// not come later in the elimination, is found by [`block`](Self::block).
-    pub(super) fn slot(&self, i: usize, j: usize) -> usize {
-        self.index(self.position[i], self.position[j])
+    /// Where its blocks are.
+    pub(super) fn pattern(&self) -> &Arc<Pattern> {
+        &self.pattern
     }
 
     /// A block to add to; of a diagonal block, the lower triangle counts.
@@ -105,19 +69,16 @@ impl<const D: usize> Stiffness<D> {
         &mut self.blocks[slot]
     }
 
-    /// Number of bodies.
-    pub(super) fn bodies(&self) -> usize {
-        self.position.len()
-    }
-
     /// Overwrites the matrix, which must be positive semidefinite, with its factor.
     pub(super) fn factorise(&mut self) {
-        let diagonal = |k: usize| -> [f64; D] { std::array::from_fn(|c| self.blocks[self.first[k]][c][c]) };
-        let least: Vec<[f64; D]> =
-            (0..self.position.len()).map(|k| diagonal(k).map(|d| (d * LEAST_PIVOT).max(f64::MIN_POSITIVE))).collect();
-        let mut target = self.targets.iter();
+        let diagonal = |k: usize| -> [f64; D] { std::array::from_fn(|c| self.blocks[self.pattern.first[k]][c][c]) };
+        let least: Vec<[f64; D]> = (0..self.pattern.position.len())
+            .map(|k| diagonal(k).map(|d| (d * LEAST_PIVOT).max(f64::MIN_POSITIVE)))
+            .collect();
+        let Pattern { first: firsts, targets, .. } = &*self.pattern;
+        let mut target = targets.iter();
         for (k, least) in least.iter().enumerate() {
-            let (first, end) = (self.first[k], self.first[k + 1]);
+            let (first, end) = (firsts[k], firsts[k + 1]);
             cholesky(&mut self.blocks[first], least);
             let pivot = self.blocks[first];
             for block in &mut self.blocks[first + 1..end] {
@@ -136,11 +97,11 @@ impl<const D: usize> Stiffness<D> {
     /// `x := L^-1 x`, by bodies; the result is in the order of elimination.
     pub(super) fn forward(&self, x: &[f64]) -> Vec<f64> {
         let mut y = vec![0.0; x.len()];
-        for (body, &k) in self.position.iter().enumerate() {
+        for (body, &k) in self.pattern.position.iter().enumerate() {
             y[D * k..D * k + D].copy_from_slice(&x[D * body..D * body + D]);
         }
-        for k in 0..self.position.len() {
-            let pivot = &self.blocks[self.first[k]];
+        for k in 0..self.pattern.position.len() {
+            let pivot = &self.blocks[self.pattern.first[k]];
             let mut own: [f64; D] = std::array::from_fn(|r| y[D * k + r]);
             for c in 0..D {
                 own[c] *= pivot[c][c];
@@ -149,8 +110,8 @@ impl<const D: usize> Stiffness<D> {
                 }
             }
             y[D * k..D * k + D].copy_from_slice(&own);
-            for n in self.first[k] + 1..self.first[k + 1] {
-                let (block, row) = (&self.blocks[n], self.rows[n]);
+            for n in self.pattern.first[k] + 1..self.pattern.first[k + 1] {
+                let (block, row) = (&self.blocks[n], self.pattern.rows[n]);
                 let part = &mut y[D * row..D * row + D];
                 for (column, factor) in block.iter().zip(&own) {
                     for (entry, value) in part.iter_mut().zip(column) {
@@ -164,16 +125,16 @@ impl<const D: usize> Stiffness<D> {
 
     /// `L'^-1 y` for `y` in the order of elimination; the result is by bodies.
     pub(super) fn backward(&self, mut y: Vec<f64>) -> Vec<f64> {
-        for k in (0..self.position.len()).rev() {
+        for k in (0..self.pattern.position.len()).rev() {
             let mut own: [f64; D] = std::array::from_fn(|r| y[D * k + r]);
-            for n in self.first[k] + 1..self.first[k + 1] {
-                let (block, row) = (&self.blocks[n], self.rows[n]);
+            for n in self.pattern.first[k] + 1..self.pattern.first[k + 1] {
+                let (block, row) = (&self.blocks[n], self.pattern.rows[n]);
                 let part = &y[D * row..D * row + D];
                 for (column, entry) in block.iter().zip(&mut own) {
                     *entry -= column.iter().zip(part).map(|(a, b)| a * b).sum::<f64>();
                 }
             }
-            let pivot = &self.blocks[self.first[k]];
+            let pivot = &self.blocks[self.pattern.first[k]];
             for c in (0..D).rev() {
                 for r in c + 1..D {
                     own[c] -= pivot[c][r] * own[r];
@@ -183,55 +144,11 @@ impl<const D: usize> Stiffness<D> {
             y[D * k..D * k + D].copy_from_slice(&own);
         }
         let mut x = vec![0.0; y.len()];
-        for (body, &k) in self.position.iter().enumerate() {
+        for (body, &k) in self.pattern.position.iter().enumerate() {
             x[D * body..D * body + D].copy_from_slice(&y[D * k..D * k + D]);
         }
         x
     }
-
-    /// Index of the block at positions `(row, column)`, `row >= column`.
-    fn index(&self, row: usize, column: usize) -> usize {
-        let (first, end) = (self.first[column], self.first[column + 1]);
-        first + self.rows[first..end].binary_search(&row).expect("in the pattern")
-    }
-}
-
-/// An order of elimination, least degree first, and per step the bodies that
-/// remain and are joined to it, directly or through eliminated ones.
-fn least_degree(bodies: usize, pairs: impl Iterator<Item = (usize, usize)>) -> (Vec<usize>, Vec<Vec<usize>>) {
-    let mut neighbours: Vec<Vec<usize>> = vec![Vec::new(); bodies];
-    for (i, j) in pairs.filter(|(i, j)| i != j) {
-        neighbours[i].push(j);
-        neighbours[j].push(i);
-    }
-    for around in &mut neighbours {
-        around.sort_unstable();
-        around.dedup();
-    }
-    // Entries whose degree is no longer true are passed over.
-    let mut queue: BinaryHeap<Reverse<(usize, usize)>> =
-        (0..bodies).map(|i| Reverse((neighbours[i].len(), i))).collect();
-    let (mut order, mut later) = (Vec::with_capacity(bodies), Vec::with_capacity(bodies));
-    let mut eliminated = vec![false; bodies];
-    let mut union = Vec::new();
-    while let Some(Reverse((degree, body))) = queue.pop() {
-        if eliminated[body] || degree != neighbours[body].len() {
-            continue;
-        }
-        eliminated[body] = true;
-        let around = std::mem::take(&mut neighbours[body]);
-        for &i in &around {
-            union.clear();
-            union.extend(neighbours[i].iter().chain(&around).filter(|&&j| j != i && j != body));
-            union.sort_unstable();
-            union.dedup();
-            neighbours[i].clone_from(&union);
-            queue.push(Reverse((neighbours[i].len(), i)));
-        }
-        order.push(body);
-        later.push(around);
-    }
-    (order, later)
 }
 
 /// Overwrites the lower triangle with the Cholesky factor, its diagonal inverted.
@@ -287,7 +204,7 @@ mod tests {
     fn solves_a_ring_of_bodies() {
         let bodies = 7;
         let pairs: Vec<(usize, usize)> = (0..bodies).map(|i| (i, (i + 1) % bodies)).collect();
-        let mut matrix = Stiffness::<6>::new(bodies, pairs.iter().copied());
+        let mut matrix = Stiffness::<6>::new(Arc::new(Pattern::new(bodies, pairs.iter().copied())));
         let mut columns: Vec<[(usize, [f64; 6]); 2]> = Vec::new();
         for (n, &(i, j)) in pairs.iter().enumerate() {
             for k in 0..8 {

@@ -216,6 +216,9 @@ impl Knowledge for Carried<'_> {
             self.links[self.slot(link)].points.iter().map(|force| axes.tr_mul(force)).collect()
         };
         let remembered = self.remembered(block);
+        if let Some(springs) = &remembered {
+            springs.give.lend_pattern(&program);
+        }
         let sprung =
             remembered.as_ref().map(|springs| Sprung { give: &springs.give, springs: self.numbers(block, springs) });
         let climbed = Ladder::new(problem, self.question).climb(self.motion(block), field, known, self.falls, sprung);

@@ -10,11 +10,10 @@ use nalgebra::Vector6;
 
 use crate::spatial::{Twist, Vec3, Wrench};
 
-use super::super::balance::residuals;
 use super::super::bracket::Problem;
 use super::super::maps::relative;
 use super::super::network::Network;
-use super::super::program::local_body;
+use super::super::program::Program;
 use super::super::series::flexibility_root;
 use super::field::{Field, face};
 use super::room::Rooms;
@@ -48,13 +47,18 @@ pub(super) struct Change {
 impl Give {
     pub(super) fn new(problem: &Problem<'_>, rooms: Rooms) -> Self {
         let mut network = Network::new(problem.program, true);
-        network.factorise(&rooms.metrics, |link| flexibility_root(&rooms.metrics[link]));
+        network.factorise(problem.program, &rooms.metrics, |link| flexibility_root(&rooms.metrics[link]));
         Self { network, rooms, row_factor: problem.program.row_factor.clone() }
     }
 
+    /// Spares `program`, of a neighbouring block of the same bodies, an order of elimination of its own.
+    pub(super) fn lend_pattern(&self, program: &Program) {
+        program.take_pattern(self.network.pattern());
+    }
+
     /// The same block at other rooms: the pattern stays.
-    pub(super) fn renew(&mut self, rooms: Rooms) {
-        self.network.factorise(&rooms.metrics, |link| flexibility_root(&rooms.metrics[link]));
+    pub(super) fn renew(&mut self, problem: &Problem<'_>, rooms: Rooms) {
+        self.network.factorise(problem.program, &rooms.metrics, |link| flexibility_root(&rooms.metrics[link]));
         self.rooms = rooms;
     }
 
@@ -144,19 +148,13 @@ impl Give {
 /// What the wrenches of links push the block's bodies with.
 fn pushes(problem: &Problem<'_>, wrenches: &[Wrench]) -> Vec<Wrench> {
     let mut pushed = vec![Wrench::ZERO; problem.block.bodies.len()];
-    for (frame, wrench) in problem.program.frames.iter().zip(wrenches) {
-        for (side, sign) in frame.sides() {
-            if let Some(i) = local_body(problem.block, side) {
-                pushed[i] += frame.to_body(wrench, &problem.program.coms[i]) * sign;
-            }
-        }
-    }
+    problem.program.push(wrenches, &mut pushed);
     pushed
 }
 
 /// What every body of the block lacks for balance.
 pub(super) fn lacking(problem: &Problem<'_>, field: &[Wrench]) -> Vec<Wrench> {
-    residuals(problem.structure, problem.block, problem.program, problem.loads, field)
+    problem.program.residuals(problem.block, problem.loads, field)
 }
 
 /// Whether `lacking` is nothing but rounding.
@@ -188,7 +186,6 @@ mod tests {
     use crate::statics::blocks::{Block, cut};
     use crate::statics::connector::{Connector, Model};
     use crate::statics::loads::{BodyLoad, own_loads};
-    use crate::statics::program::Program;
     use crate::statics::structure::{Anchor, Body, Connection, Structure};
 
     /// Four cubes of 0.1 m on top of each other's sides, a ring that stands on the world.
@@ -238,7 +235,7 @@ mod tests {
                 assert!(give.refine(problem, &mut moved));
                 assert!(balances(problem, &lacking(problem, &moved.wrenches)));
                 // Another room, the same pattern.
-                give.renew(Rooms::new(problem, &moved, 0.5));
+                give.renew(problem, Rooms::new(problem, &moved, 0.5));
                 moved.wrenches[2] = Wrench::ZERO;
                 field = moved;
             }
@@ -252,7 +249,7 @@ mod tests {
             let mut give = Give::new(problem, Rooms::new(problem, &field, 3.0));
             for _ in 0..10 {
                 field.add(&give.balancing(problem, &field, 0.7).field, 1.0);
-                give.renew(Rooms::new(problem, &field, 3.0));
+                give.renew(problem, Rooms::new(problem, &field, 3.0));
             }
             let opening = Opening::new(problem, give.centring(problem));
             // Two cubes go sideways: links between them and the others slip.

@@ -21,8 +21,17 @@ use super::room::Rooms;
 /// Each costs a factorisation; later ones rarely decide.
 const ROUNDS: usize = 4;
 
-/// Demand, over the level that is asked for, from which on more rounds are hopeless after each.
-const HOPELESS: [f64; ROUNDS] = [f64::INFINITY, 2.5, 1.2, 0.0];
+/// Excess of the demand, relative to the level that is asked for, from which on more rounds are
+/// hopeless after each.
+const HOPELESS: [f64; ROUNDS] = [1.4, 0.8, 0.2, 0.0];
+
+/// What a round has to leave at most, of that excess or of what the lower bound lacks, for the next
+/// one to be worth its factorisation.
+const WORTHWHILE: f64 = 0.5;
+
+/// Excess above which a second round that got nowhere says little: it is the first one that
+/// begins from wrenches put back into their cones.
+const ASTRAY: f64 = 0.1;
 
 /// Share of the way to the middles of the cones in the first round, which starts
 /// from a field that was good where it comes from, and in later ones.
@@ -150,11 +159,12 @@ impl<'p> Ladder<'p> {
     /// Upper bounds from the field balanced and put back into its cones in turns, lower
     /// bounds from the way in which the loads win where that is not enough.
     fn repair(&mut self, mut field: Field, level: f64, twists: &[Twist]) {
-        for round in 0..ROUNDS {
+        let mut before = [f64::INFINITY; 2];
+        for (round, hopeless) in HOPELESS.into_iter().enumerate() {
             let rooms = Rooms::new(&self.problem, &field, level);
             let give = match self.give.take() {
                 Some(mut give) => {
-                    give.renew(rooms);
+                    give.renew(&self.problem, rooms);
                     give
                 }
                 None => Give::new(&self.problem, rooms),
@@ -180,9 +190,14 @@ impl<'p> Ladder<'p> {
             if round == 0 && !twists.is_empty() && !self.answered() {
                 self.keep_lower(&opening, twists.to_vec());
             }
-            if self.answered() || most.is_some_and(|most| most > HOPELESS[round] * level) {
+            let excess = most.map_or(f64::INFINITY, |most| most / level - 1.0);
+            let left = [excess, 1.0 - self.bracket.lower / level];
+            let got_on = left.iter().zip(&before).any(|(left, before)| *left <= WORTHWHILE * before);
+            let may_come = got_on || round == 1 && excess > ASTRAY;
+            if self.answered() || most.is_some() && excess > hopeless || !may_come {
                 return;
             }
+            before = left;
             put_back(&self.problem, &mut field, level);
         }
     }

@@ -13,7 +13,6 @@ use crate::spatial::{Twist, Vec3};
 use super::super::blocks::Link;
 use super::super::bracket::Problem;
 use super::super::connector::Model;
-use super::super::program::local_body;
 use super::super::second_order::norm;
 
 /// Depth of the apex behind the supports over the distance of the farthest body.
@@ -31,9 +30,12 @@ const EXCESS: f64 = 1.0 + 1e-6;
 fn breathing(problem: &Problem<'_>) -> Vec<Twist> {
     let Problem { structure, block, program, .. } = *problem;
     let (mut middle, mut inward, mut count) = (Vec3::zeros(), Vec3::zeros(), 0.0_f64);
-    for frame in &program.frames {
-        let [a, b] = frame.sides().map(|(side, sign)| local_body(block, side).map(|_| sign));
-        if let (Some(sign), None) | (None, Some(sign)) = (a, b) {
+    for (frame, ends) in program.frames.iter().zip(&program.ends) {
+        if let Some(sign) = match ends {
+            [Some(_), None] => Some(1.0),
+            [None, Some(_)] => Some(-1.0),
+            _ => None,
+        } {
             middle += frame.origin;
             inward += frame.axes.column(2) * sign;
             count += 1.0;
@@ -96,9 +98,8 @@ impl<'p> Opening<'p> {
 /// hold by equations or not at all, which opening does not help.
 fn reserves(problem: &Problem<'_>, twists: &[Twist]) -> Vec<f64> {
     let Problem { structure, block, program, .. } = *problem;
-    let twist = |body: usize| block.bodies.binary_search(&body).map_or(Twist::ZERO, |i| twists[i]);
-    let reserve = |(&link, frame): (&Link, &super::super::frame::LinkFrame)| {
-        let relative = frame.relative_twist(structure, twist);
+    let reserve = |(l, &link): (usize, &Link)| {
+        let relative = program.relative_twist(l, twists);
         let Twist { linear: v, angular: w } = relative;
         let at_point = |x: f64, y: f64, friction: f64| {
             let v = relative.at(&Vec3::new(x, y, 0.0));
@@ -118,5 +119,5 @@ fn reserves(problem: &Problem<'_>, twists: &[Twist]) -> Vec<f64> {
             },
         }
     };
-    block.links.iter().zip(&program.frames).map(reserve).collect()
+    block.links.iter().enumerate().map(reserve).collect()
 }

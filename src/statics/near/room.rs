@@ -16,7 +16,6 @@ use crate::spatial::{Vec3, Wrench};
 use super::super::blocks::Link;
 use super::super::bracket::Problem;
 use super::super::connector::{Connector, Model};
-use super::super::program::local_body;
 use super::super::second_order::norm;
 use super::field::{Field, face};
 
@@ -72,12 +71,7 @@ impl Rooms {
                             }
                             centre
                         }
-                        _ => {
-                            let sides = program.frames[l].sides().into_iter();
-                            let bodies = sides.filter_map(|(side, _)| local_body(block, side));
-                            let lever = bodies.map(|i| program.scales.lever[i]).fold(0.0, f64::max);
-                            rooms.add_connection(connector, wrench, level, force, lever)
-                        }
+                        _ => rooms.add_connection(connector, wrench, level, force, program.lever_of(l)),
                     }
                 }
             };
