@@ -187,8 +187,8 @@ pub fn least_preload(wrench: &Wrench, friction: f64, points: &[[f64; 2]]) -> Opt
     (solver.solution.status == SolverStatus::Solved).then_some(solver.solution.obj_val * scale)
 }
 
-/// Twist of `plus` against `minus` at `at`, in the frame `axes`, and the size of
-/// the terms in it.
+/// Twist of `plus` against `minus` at `at`, in the frame `axes`, and the sizes of
+/// the terms in its two parts.
 fn relative(
     structure: &Structure,
     answer: &Assessment,
@@ -196,17 +196,18 @@ fn relative(
     minus: Anchor,
     at: Vec3,
     axes: &Matrix3<f64>,
-) -> (Twist, f64) {
-    let (mut linear, mut angular, mut size) = (Vec3::zeros(), Vec3::zeros(), 0.0);
+) -> (Twist, [f64; 2]) {
+    let (mut linear, mut angular, mut sizes) = (Vec3::zeros(), Vec3::zeros(), [0.0; 2]);
     for (anchor, sign) in [(plus, 1.0), (minus, -1.0)] {
         if let Some(i) = movable(structure, anchor) {
             let (twist, arm) = (&answer.mechanism[i], at - structure.bodies[i].com);
             linear += (twist.linear + twist.angular.cross(&arm)) * sign;
             angular += twist.angular * sign;
-            size += twist.linear.norm() + twist.angular.norm() * (arm.norm() + at.norm() + 1e-9);
+            sizes[0] += twist.linear.norm() + twist.angular.norm() * (arm.norm() + at.norm() + 1e-9);
+            sizes[1] += twist.angular.norm();
         }
     }
-    (Twist::new(axes.transpose() * linear, axes.transpose() * angular), size)
+    (Twist::new(axes.transpose() * linear, axes.transpose() * angular), sizes)
 }
 
 /// Power of gravity and loads in the mechanism, and the size of its terms.
@@ -231,15 +232,17 @@ fn power(structure: &Structure, answer: &Assessment) -> (f64, f64) {
     (total, size)
 }
 
-/// By how much the contacts and connections resist the mechanism, in m/s, and
-/// what the connections dissipate at their rated strengths; `rigid` treats every
-/// limit above zero as unlimited.
+/// By how much the contacts and connections resist the mechanism, in m/s, the size of the terms
+/// in that, and what the connections dissipate at their rated strengths, at least, as far as
+/// rounding tells: bodies that move fast together leave some of it in every connection
+/// between them. `rigid` treats every limit above zero as unlimited.
 fn resistance(structure: &Structure, answer: &Assessment, rigid: bool) -> (f64, f64, f64) {
     let (mut worst, mut fastest, mut dissipation) = (0.0_f64, 0.0_f64, 0.0);
+    let at_least = |speed: f64, size: f64| (speed - 4.0 * f64::EPSILON * size).max(0.0);
     for contact in &structure.contacts {
         let axes = Matrix3::identity();
         let pair = (Anchor::Body(contact.body), contact.against);
-        let (twist, size) = relative(structure, answer, pair.0, pair.1, contact.position, &axes);
+        let (twist, [size, _]) = relative(structure, answer, pair.0, pair.1, contact.position, &axes);
         let opening = twist.linear.dot(&contact.normal);
         let sliding = (twist.linear - contact.normal * opening).norm();
         fastest = fastest.max(size);
@@ -249,7 +252,7 @@ fn resistance(structure: &Structure, answer: &Assessment, rigid: bool) -> (f64, 
         let connector = &structure.connectors[connection.connector];
         let axes = *connection.frame.rotation.to_rotation_matrix().matrix();
         let at = connection.frame.translation.vector;
-        let (twist, size) = relative(structure, answer, connection.child, connection.parent, at, &axes);
+        let (twist, [size, turning]) = relative(structure, answer, connection.child, connection.parent, at, &axes);
         fastest = fastest.max(size);
         let (v, w) = (&twist.linear, &twist.angular);
         let components = Vector6::new(v.x, v.y, v.z, w.x, w.y, w.z);
@@ -257,7 +260,7 @@ fn resistance(structure: &Structure, answer: &Assessment, rigid: bool) -> (f64, 
             Model::Cone { friction: [a, b], radius: [c, d, e] } => {
                 let rubbing = [a * v.x, b * v.y, c * w.x, d * w.y, e * w.z].map(|x| x * x).iter().sum::<f64>().sqrt();
                 worst = worst.max(if rigid { components.norm() } else { rubbing - v.z });
-                dissipation += connector.strength * v.z;
+                dissipation += connector.strength * at_least(v.z, size);
             }
             Model::Box { shear, tension, compression, bending, torsion } => {
                 let limits = [
@@ -268,12 +271,13 @@ fn resistance(structure: &Structure, answer: &Assessment, rigid: bool) -> (f64, 
                     (bending[1], bending[1]),
                     (*torsion, *torsion),
                 ];
-                for (velocity, (opening, closing)) in components.iter().zip(limits) {
+                let sizes = [size, size, size, turning, turning, turning];
+                for ((velocity, size), (opening, closing)) in components.iter().zip(sizes).zip(limits) {
                     let limit = if *velocity > 0.0 { opening } else { closing };
                     if limit.is_infinite() || (rigid && limit > 0.0) {
                         worst = worst.max(velocity.abs());
                     } else {
-                        dissipation += limit * velocity.abs();
+                        dissipation += limit * at_least(velocity.abs(), size);
                     }
                 }
             }
@@ -283,7 +287,7 @@ fn resistance(structure: &Structure, answer: &Assessment, rigid: bool) -> (f64, 
                     worst = worst.max(friction * here.xy().norm() - here.z);
                 }
                 worst = worst.max(if rigid { v.z.abs() } else { 0.0 });
-                dissipation += connector.strength * v.z;
+                dissipation += connector.strength * at_least(v.z, size);
             }
         }
     }

@@ -111,7 +111,7 @@ fn parallel(family: &mut Family<'_>) {
     }
 }
 
-const PARALLEL: usize = 1000;
+const PARALLEL: usize = 3000;
 
 /// Long cantilevers closed to a loop.
 fn loops(family: &mut Family<'_>) {
@@ -125,7 +125,7 @@ fn loops(family: &mut Family<'_>) {
     }
 }
 
-const LOOPS: usize = 300;
+const LOOPS: usize = 1000;
 
 /// Mass ratios of 1e6, 1e9 and 1e12.
 fn masses(family: &mut Family<'_>) {
@@ -273,12 +273,9 @@ fn units(family: &mut Family<'_>) {
 fn supports(family: &mut Family<'_>) {
     for depth in [1e-1, 1e-3, 1e-6, 1e-9] {
         for share in [0.0, 1e-3, 0.3, 0.999, 1.0, 1.001, -0.001, 5.0] {
-            // A nanometre in 0.2 m is beyond the solvers so far: undecided for some.
-            family.sized(
-                if depth < 1e-6 { Size::Large } else { Size::Small },
-                format!("tripod {depth:e}, {share}"),
-                move || tripod(depth, share),
-            );
+            // A nanometre in 0.2 m is at the edge: a share in the middle stays undecided.
+            let size = if depth < 1e-6 && share == 0.3 { Size::Large } else { Size::Small };
+            family.sized(size, format!("tripod {depth:e}, {share}"), move || tripod(depth, share));
             family.add_if_narrow(depth >= 1e-6, format!("pins {depth:e}, {share}"), move || pins(depth, share));
         }
         family.add(format!("seesaw {depth:e}"), move || seesaw(1.0, depth, 0.2, 0.5));
@@ -328,7 +325,7 @@ fn redundant(family: &mut Family<'_>) {
         family
             .sized(size, format!("slab {side} x {side}, {links} links, turned"), move || turned(slab(side, links), 13));
     }
-    family.sized(Size::Large, "slab 20 x 20, 3 links", || slab(20, 3));
+    family.add("slab 20 x 20, 3 links", || slab(20, 3));
 }
 
 const SLAB: usize = 8;
