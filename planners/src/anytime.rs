@@ -4,15 +4,12 @@ use crate::budget::Limit;
 use crate::graph::{DEAD_END, START};
 use crate::outcome::{Outcome, Path, Proof};
 use crate::progress::Pass;
-use crate::search::{Bounds, Known, PathOf, Search};
+use crate::search::{Bounds, FIRST_SHARE, Known, PathOf, Search};
 use crate::shortest::{ShortestRun, Task};
 use crate::space::Space;
 
 /// How much the bound on the remaining cost counts in a hurry.
 const GREED: u32 = 4;
-
-/// Expansions after which a proof first pauses for an attempt at a better path.
-const FIRST_SHARE: u64 = 128;
 
 /// An engine that finds a cheapest path at least as wide as its floor, like [`Search::shortest`].
 pub type Shortest<'e, S> = &'e dyn for<'s> Fn(&mut Search<'s, S>, f64) -> Outcome<PathOf<S>>;
@@ -107,15 +104,6 @@ impl<S: Space> Search<'_, S> {
     /// Some path of a width of at least `floor`, found greedily; without a limit or a path there is none.
     fn hurry(&mut self, floor: f64) -> ShortestRun {
         self.run_shortest(&Task { greed: GREED, ..Task::whole(floor, u32::MAX) })
-    }
-
-    /// Does some work with so many expansions, and says whether it was these that ended it.
-    fn sharing<T>(&mut self, share: u64, work: impl FnOnce(&mut Self) -> T) -> (T, bool) {
-        self.pause_at = self.statistics().expanded.saturating_add(share);
-        let done = work(self);
-        let is_paused = std::mem::take(&mut self.is_paused);
-        self.pause_at = u64::MAX;
-        (done, is_paused)
     }
 
     /// The least width that counts as more than `width`: half the tolerance above it, so that finding none as wide

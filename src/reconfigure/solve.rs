@@ -14,6 +14,7 @@ use super::compose::{compose, expand, ports};
 use super::domain::{Domain, width};
 use super::engines::{Task, Translation};
 use super::large::{self, EXACT_MODULES, decompose};
+use super::open_ground::OpenGround;
 use super::options::{Event, Method, Options, Reduction};
 use super::oracle::Worst;
 use super::plan::{Plan, Report};
@@ -22,6 +23,7 @@ use super::problem::Problem;
 use super::refusal::{Impossible, Refusal, Rejection, Which};
 use super::saturated::{self, Saturated};
 use super::step::Step;
+use super::symmetry::Symmetry;
 use super::trace::Trace;
 
 /// Plans how to get from `start` to `goal` with every transient state proved stable.
@@ -69,9 +71,14 @@ pub fn solve(
                 let space = Saturated::new(&domain, ends.start_width(), ends.at_most());
                 let steps = |path: &[saturated::Action]| expand(&problem, path);
                 let plans = Plans { domain: &domain, steps };
+                let symmetry = Symmetry::of(&problem);
                 // Where it is known what the goal looks like, the search comes from there as well.
                 match options.baseline {
                     None if space.goals().is_empty() => task.run(&space, &plans, on_event),
+                    None if symmetry.is_some() => {
+                        let space = OpenGround::new(&domain, space, symmetry.expect("it was looked at"));
+                        task.run_with(&space, &plans, &|search, floor| search.from_both_ends_by_class(floor), on_event)
+                    }
                     None => task.run_with(&space, &plans, &|search, floor| search.from_both_ends(floor), on_event),
                     Some(Baseline::Blind) => task.run(&Blind(&space), &plans, on_event),
                     Some(Baseline::Eager) => {
