@@ -10,7 +10,7 @@ use crate::outcome::Outcome;
 use crate::progress::Pass;
 use crate::registry::StateId;
 use crate::search::{Bounds, FIRST_SHARE, PathOf, Search, is_wide_enough};
-use crate::space::Periodic;
+use crate::space::{Periodic, Width};
 
 /// What tells classes apart.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -25,8 +25,10 @@ enum By {
 enum Finding {
     /// There is none.
     Apart,
-    /// There is one, unless it leads through transitions whose width cannot be told from the floor.
+    /// There is one.
     Joined,
+    /// There is one, unless it leads through a transition whose width cannot be told from the floor.
+    Open,
     /// Not known yet.
     Stopped(Limit),
 }
@@ -36,13 +38,20 @@ enum Finding {
 pub(crate) struct Classes {
     /// The representative of every state that was asked for, and the displacement from it.
     of: [HashMap<StateId, (StateId, Displacement)>; 2],
-    /// A floor at which the goal is not apart.
-    joined: Option<f64>,
-    /// A floor at which it is.
+    /// The largest floor at which there is known to be a path, though none may have been found.
+    pub joined: Option<f64>,
+    /// The largest floor at which nothing more can be told.
+    open: Option<f64>,
+    /// The least floor at which there is no path.
     apart: Option<f64>,
 }
 
 impl Classes {
+    /// Whether something is to be learnt about a floor.
+    fn is_worth_asking(&self, floor: f64) -> bool {
+        [self.joined, self.open].into_iter().flatten().all(|known| floor > known)
+    }
+
     /// Approximate memory, in bytes.
     pub fn bytes(&self) -> usize {
         // As in the registry: slots that are free, and a byte of control for each.
@@ -87,6 +96,22 @@ struct Exploration {
     loops: Lattice,
     /// By how much the first class that both ends reached is displaced, seen from the one and from the other.
     gap: Option<Displacement>,
+    /// Whether some transition counted as wide enough although that could not be told.
+    is_open: bool,
+}
+
+impl Exploration {
+    fn new(by: By, floor: f64) -> Self {
+        let sides = [Explorer::new(End::Start), Explorer::new(End::Goal)];
+        Exploration { by, floor, sides, loops: Lattice::default(), gap: None, is_open: false }
+    }
+
+    /// Whether a transition counts as wide enough: it does where that cannot be told.
+    fn passes(&mut self, width: Width) -> bool {
+        let passes = is_wide_enough(width.upper, self.floor);
+        self.is_open |= passes && !is_wide_enough(width.lower, self.floor);
+        passes
+    }
 }
 
 impl<S: Periodic> Search<'_, S> {
@@ -98,7 +123,7 @@ impl<S: Periodic> Search<'_, S> {
     /// classes of its states, along transitions of the same widths. If the goal's class is
     /// not among those that can be reached, there is no path. If it is, what counts is the
     /// displacement: ways from a class back to itself displace by sums of those of the loops in the graph of classes, a lattice,
-    /// and the goal is out of reach unless it is displaced by one of them from where the class was first reached. Where every
+    /// and the goal is out of reach unless it is displaced by one of them from where the class was first reached. Since every
     /// transition can be taken back, that is exact.
     ///
     /// Classes are explored from both ends, and the search ends with the first that is exhausted. It takes turns with the search
@@ -109,7 +134,7 @@ impl<S: Periodic> Search<'_, S> {
     /// Those of [`Search::from_both_ends`].
     pub fn from_both_ends_by_class(&mut self, floor: f64) -> Outcome<PathOf<S>> {
         let mut share = FIRST_SHARE;
-        while self.widest.is_none_or(|width| floor > width) && self.classes.joined.is_none_or(|joined| floor > joined) {
+        while self.widest.is_none_or(|width| floor > width) && self.classes.is_worth_asking(floor) {
             if self.classes.apart.is_some_and(|apart| floor >= apart) {
                 return Outcome::Impossible;
             }
@@ -121,6 +146,7 @@ impl<S: Periodic> Search<'_, S> {
             match finding {
                 Finding::Apart => self.classes.apart = Some(floor),
                 Finding::Joined => self.classes.joined = Some(floor),
+                Finding::Open => self.classes.open = Some(floor),
                 Finding::Stopped(limit) if !is_paused => {
                     let bounds = Bounds { width_at_most: self.graph.cap(), cost_at_least: self.graph.remaining(START) };
                     return self.conclude(None, Some(limit), floor, bounds);
@@ -140,7 +166,7 @@ impl<S: Periodic> Search<'_, S> {
     /// Whether a path may be as wide as `floor`: coarse classes first, since there are fewer.
     fn finding(&mut self, floor: f64) -> Finding {
         match self.explore(By::Kind, floor) {
-            Finding::Joined => self.explore(By::Class, floor),
+            Finding::Joined | Finding::Open => self.explore(By::Class, floor),
             finding => finding,
         }
     }
@@ -149,8 +175,7 @@ impl<S: Periodic> Search<'_, S> {
         if self.graph.is_goal(START) {
             return Finding::Joined;
         }
-        let sides = [Explorer::new(End::Start), Explorer::new(End::Goal)];
-        let mut all = Exploration { by, floor, sides, loops: Lattice::default(), gap: None };
+        let mut all = Exploration::new(by, floor);
         let (class, at) = self.class_of(by, START);
         self.reach(&mut all, End::Start, class, at);
         // Every way to a goal is a root of its own: what leads from one to another counts as a loop, which claims no less
@@ -170,7 +195,7 @@ impl<S: Periodic> Search<'_, S> {
         }
         loop {
             if all.gap.is_some_and(|gap| all.loops.contains(gap)) {
-                return Finding::Joined;
+                return if all.is_open { Finding::Open } else { Finding::Joined };
             }
             let [start, goal] = &mut all.sides;
             if start.open.is_empty() || goal.open.is_empty() {
@@ -188,7 +213,8 @@ impl<S: Periodic> Search<'_, S> {
             if let Some(limit) = self.tick(bytes) {
                 return Finding::Stopped(limit);
             }
-            if is_wide_enough(self.graph.decide(end, arrow, floor).upper, floor) {
+            let width = self.graph.decide(end, arrow, floor);
+            if all.passes(width) {
                 self.reach(&mut all, end, class, at);
             }
         }

@@ -134,7 +134,8 @@ pub trait Reversible: Space {
 ///
 /// Let the transitions of the space be those between states that are no goals. If `class(s)` is `(r, d)`, then `r` is no
 /// goal, `class(r)` is `(r, 0)`, and to every transition between `s` and a state of class `(r', d')` belongs one between
-/// `r` and a state of class `(r', d' - d)`, in the same direction and of the same width.
+/// `r` and a state of class `(r', d' - d)`, in the same direction and of the same width. And every transition between two
+/// of these states can be taken back by one of the same width.
 pub trait Periodic: Reversible {
     /// The state that represents a state's class, and the displacement from it. The state is no goal.
     fn class(&self, state: &Self::State) -> (Self::State, Displacement);

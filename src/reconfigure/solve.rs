@@ -71,12 +71,11 @@ pub fn solve(
                 let space = Saturated::new(&domain, ends.start_width(), ends.at_most());
                 let steps = |path: &[saturated::Action]| expand(&problem, path);
                 let plans = Plans { domain: &domain, steps };
-                let symmetry = Symmetry::of(&problem);
                 // Where it is known what the goal looks like, the search comes from there as well.
                 match options.baseline {
                     None if space.goals().is_empty() => task.run(&space, &plans, on_event),
-                    None if symmetry.is_some() => {
-                        let space = OpenGround::new(&domain, space, symmetry.expect("it was looked at"));
+                    None if let Some(symmetry) = symmetry(&domain) => {
+                        let space = OpenGround::new(&domain, space, symmetry);
                         task.run_with(&space, &plans, &|search, floor| search.from_both_ends_by_class(floor), on_event)
                     }
                     None => task.run_with(&space, &plans, &|search, floor| search.from_both_ends(floor), on_event),
@@ -104,6 +103,13 @@ pub fn solve(
         Some(problem.unmoved(&reached.iter().map(|state| state.layout()).collect::<Vec<_>>()))
     });
     finished(report, &domain, began)
+}
+
+/// The symmetries of a problem whose states they make few: what need not hold together can drift apart for ever, and what need not
+/// stand can leave the ground.
+fn symmetry(domain: &Domain) -> Option<Symmetry> {
+    let is_finite = domain.stability && domain.problem.must_stay_connected();
+    Symmetry::of(domain.problem).filter(|_| is_finite)
 }
 
 /// The report with what it took.

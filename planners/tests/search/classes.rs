@@ -4,7 +4,8 @@ use std::collections::{HashMap, HashSet, VecDeque};
 use std::sync::atomic::AtomicBool;
 
 use planners::{
-    Budget, Displacement, Limit, Options, Outcome, Path, Periodic, Progress, Reversible, Search, Space, Transition, Width,
+    Budget, Displacement, Limit, Options, Outcome, Path, Periodic, Progress, Reversible, Search, Space, Transition,
+    Width,
 };
 use proptest::collection::vec;
 use proptest::prelude::*;
@@ -274,7 +275,8 @@ fn a_search_of_the_states_never_ends_there() {
 fn corridor(length: usize) -> Tiles {
     let arcs = (0..length).map(|node| (node, node + 1, [1, 0, 0], Width::exact(1.0))).collect();
     let apart = (length + 2, length + 3, [1, 0, 0], Width::exact(1.0));
-    let mut tiles = Tiles { arcs, reverses: true, start: (0, [0; 3]), goals: vec![(length + 2, [0; 3])], is_mirrored: false };
+    let mut tiles =
+        Tiles { arcs, reverses: true, start: (0, [0; 3]), goals: vec![(length + 2, [0; 3])], is_mirrored: false };
     tiles.arcs.push(apart);
     tiles.arcs.extend((0..length).map(|node| (length + 3 + node, length + 4 + node, [1, 0, 0], Width::exact(1.0))));
     tiles
