@@ -251,6 +251,7 @@ where
             Outcome::Impossible => floor.next_down(),
             Outcome::Solved { proof, .. } | Outcome::OutOfBudget { proof, .. } => proof.width_at_most,
         });
+        self.at_most = self.at_most.min(search.classes.width_at_most());
         let wider = outcome.best().filter(|path| path.width.lower > self.found.width.lower).cloned();
         let is_wider = wider.is_some();
         if let (Some(path), Some(proof)) = (wider, outcome.proof()) {

@@ -44,9 +44,16 @@ pub(crate) struct Classes {
     open: Option<f64>,
     /// The least floor at which there is no path.
     apart: Option<f64>,
+    /// No path is wider, by the transitions that all paths have to take one of.
+    width_at_most: Option<f64>,
 }
 
 impl Classes {
+    /// No path is wider, as far as classes tell.
+    pub fn width_at_most(&self) -> f64 {
+        self.width_at_most.unwrap_or(f64::INFINITY)
+    }
+
     /// Whether something is to be learnt about a floor.
     fn is_worth_asking(&self, floor: f64) -> bool {
         [self.joined, self.open].into_iter().flatten().all(|known| floor > known)
@@ -75,11 +82,13 @@ struct Explorer {
     reached: HashMap<StateId, Displacement>,
     open: VecDeque<Way>,
     asked: u64,
+    /// Upper bound on the widths of all transitions that were refused.
+    refused: f64,
 }
 
 impl Explorer {
     fn new(end: End) -> Self {
-        Explorer { end, reached: HashMap::new(), open: VecDeque::new(), asked: 0 }
+        Explorer { end, reached: HashMap::new(), open: VecDeque::new(), asked: 0, refused: f64::NEG_INFINITY }
     }
 
     fn bytes(&self) -> usize {
@@ -107,10 +116,18 @@ impl Exploration {
     }
 
     /// Whether a transition counts as wide enough: it does where that cannot be told.
-    fn passes(&mut self, width: Width) -> bool {
+    fn passes(&mut self, end: End, width: Width) -> bool {
         let passes = is_wide_enough(width.upper, self.floor);
         self.is_open |= passes && !is_wide_enough(width.lower, self.floor);
+        if !passes {
+            self.refuse(end, width.upper);
+        }
         passes
+    }
+
+    fn refuse(&mut self, end: End, width_at_most: f64) {
+        let refused = &mut self.sides[end as usize].refused;
+        *refused = refused.max(width_at_most);
     }
 }
 
@@ -198,7 +215,10 @@ impl<S: Periodic> Search<'_, S> {
                 return if all.is_open { Finding::Open } else { Finding::Joined };
             }
             let [start, goal] = &mut all.sides;
-            if start.open.is_empty() || goal.open.is_empty() {
+            if let Some(exhausted) = [&*start, &*goal].into_iter().find(|side| side.open.is_empty()) {
+                // Every path takes one of the transitions that were refused to it.
+                let known = self.classes.width_at_most();
+                self.classes.width_at_most = Some(exhausted.refused.min(known));
                 return Finding::Apart;
             }
             let side = if start.asked <= goal.asked { start } else { goal };
@@ -214,7 +234,7 @@ impl<S: Periodic> Search<'_, S> {
                 return Finding::Stopped(limit);
             }
             let width = self.graph.decide(end, arrow, floor);
-            if all.passes(width) {
+            if all.passes(end, width) {
                 self.reach(&mut all, end, class, at);
             }
         }
@@ -242,7 +262,12 @@ impl<S: Periodic> Search<'_, S> {
             let arrow = Arrow { from: class, index: index as u32 };
             let edge = self.graph.edge_seen_from(end, arrow);
             let far = edge.to;
-            if is_wide_enough(edge.width.upper, all.floor) && !self.graph.is_goal(far) {
+            if self.graph.is_goal(far) {
+                continue;
+            }
+            if !is_wide_enough(edge.width.upper, all.floor) {
+                all.refuse(end, edge.width.upper);
+            } else {
                 let (class, by) = self.class_of(all.by, far);
                 all.sides[end as usize].open.push_back(Way { arrow, class, at: sum(at, by) });
             }

@@ -3,7 +3,7 @@
 
 use std::time::Instant;
 
-use planners::{Reversible, Space, Width};
+use planners::{Reversible, Shortest, Space, Width};
 
 use crate::robot::{Configuration, FaceConnection, Goal};
 use crate::statics::Bracket;
@@ -99,17 +99,28 @@ pub fn solve(
     }
     let space = Saturated::new(&domain, ends.start_width(), ends.at_most());
     let steps = |path: &[saturated::Action]| expand(&problem, path);
-    report.in_the_way = task.in_the_way(&space, &Plans { domain: &domain, steps }, &report, &|reached| {
+    let plans = Plans { domain: &domain, steps };
+    let unmoved = |reached: &[&saturated::State]| {
         Some(problem.unmoved(&reached.iter().map(|state| state.layout()).collect::<Vec<_>>()))
-    });
+    };
+    report.in_the_way = match symmetry(&domain) {
+        Some(symmetry) => {
+            let space = OpenGround::new(&domain, space, symmetry);
+            let shortest: Shortest<'_, OpenGround> = &|search, floor| search.from_both_ends_by_class(floor);
+            task.in_the_way(&space, &plans, &report, shortest, &unmoved)
+        }
+        None => task.in_the_way(&space, &plans, &report, &|search, floor| search.shortest(floor), &unmoved),
+    };
     finished(report, &domain, began)
 }
 
-/// The symmetries of a problem whose states they make few: what need not hold together can drift apart for ever, and what need not
-/// stand can leave the ground.
+/// The symmetries of a problem that leave few states of it and know its goal. What need not hold together can drift apart for ever,
+/// and what need not stand can leave the ground.
 fn symmetry(domain: &Domain) -> Option<Symmetry> {
-    let is_finite = domain.stability && domain.problem.must_stay_connected();
-    Symmetry::of(domain.problem).filter(|_| is_finite)
+    let problem = domain.problem;
+    let is_finite = domain.stability && problem.must_stay_connected();
+    let is_known = !problem.goal().is_free() && !problem.turns();
+    Symmetry::of(problem).filter(|_| is_finite && is_known)
 }
 
 /// The report with what it took.
