@@ -4,15 +4,12 @@ use crate::budget::Limit;
 use crate::graph::{DEAD_END, START};
 use crate::outcome::{Outcome, Path, Proof};
 use crate::progress::Pass;
-use crate::search::{Bounds, Known, PathOf, Search};
+use crate::search::{Bounds, FIRST_SHARE, Known, PathOf, Search};
 use crate::shortest::{ShortestRun, Task};
 use crate::space::Space;
 
 /// How much the bound on the remaining cost counts in a hurry.
 const GREED: u32 = 4;
-
-/// Expansions after which a proof first pauses for an attempt at a better path.
-const FIRST_SHARE: u64 = 128;
 
 /// An engine that finds a cheapest path at least as wide as its floor, like [`Search::shortest`].
 pub type Shortest<'e, S> = &'e dyn for<'s> Fn(&mut Search<'s, S>, f64) -> Outcome<PathOf<S>>;
@@ -33,38 +30,48 @@ impl<S: Space> Search<'_, S> {
         shortest: Shortest<'_, S>,
         on_path: &mut dyn FnMut(&PathOf<S>),
     ) -> Outcome<PathOf<S>> {
+        match self.first(floor, shortest) {
+            First::Answer(outcome) => told(outcome, None, on_path),
+            First::Early(path) => {
+                on_path(&path);
+                told(shortest(self, floor), Some(path), on_path)
+            }
+        }
+    }
+
+    /// The first that comes: the answer of `shortest`, or some path that a greedy search finds.
+    fn first(&mut self, floor: f64, shortest: Shortest<'_, S>) -> First<PathOf<S>> {
         if matches!(self.graph.remaining(START), 0 | DEAD_END) {
-            return told(shortest(self, floor), None, on_path);
+            return First::Answer(shortest(self, floor));
         }
         let mut share = FIRST_SHARE;
-        let early = loop {
+        loop {
             self.begin();
             self.monitor.progress.pass = Pass::Greedy;
             let ShortestRun { best, limit, .. } = self.sharing(share, |search| search.hurry(floor)).0;
             if let Some(arrows) = best {
-                break self.path(&arrows);
+                return First::Early(self.path(&arrows));
             } else if limit.is_none() {
-                return Outcome::Impossible;
+                return First::Answer(Outcome::Impossible);
             }
             let (outcome, paused) = self.sharing(share, |search| shortest(search, floor));
             if !paused {
-                return told(outcome, None, on_path);
+                return First::Answer(outcome);
             }
             share = share.saturating_mul(2);
-        };
-        on_path(&early);
-        told(shortest(self, floor), Some(early), on_path)
+        }
     }
 
     /// The cheapest of the widest paths among those of a width of at least `floor`, like [`Search::margin`], with
     /// other paths in hand before.
     ///
     /// A search for the least cost is guided by the bounds on remaining costs, and asks of a transition only whether it is
-    /// wide enough ([`Space::decide`]); one for the largest width can do neither. So a cheap path comes first
-    /// ([`Search::anytime_shortest`]), and then the question is only whether a path is wider *by more than the tolerance
+    /// wide enough ([`Space::decide`]); one for the largest width can do neither. So some path comes first, as in
+    /// [`Search::anytime_shortest`], and then the question is only whether a path is wider *by more than the tolerance
     /// admits*, again and again, each by `shortest` with a higher floor. Searched from both ends, the
     /// last of them ends as soon as either end is exhausted. While that takes long, every other share of the work
-    /// goes to floors half-way between the widest path so far and the bound: each finds a wider path, lowers the bound, or is given up.
+    /// goes to floors half-way between what is known to be possible and the bound: each finds a wider path, lowers the bound, or is
+    /// given up. What is left is the cheapest path of the best width, unless the last search has found that.
     ///
     /// Every path that is better than those before it (wider, or as wide and cheaper) goes to `on_path`.
     ///
@@ -77,23 +84,33 @@ impl<S: Space> Search<'_, S> {
         shortest: Shortest<'_, S>,
         on_path: &mut dyn FnMut(&PathOf<S>),
     ) -> Outcome<PathOf<S>> {
-        let (found, proof) = match self.anytime_shortest(floor, shortest, on_path) {
-            Outcome::Solved { found, proof } => (found, proof),
-            Outcome::OutOfBudget { limit: Limit::Precision, best: Some(found), proof } => (found, proof),
-            unsolved => return unsolved,
+        let mut ascent = match self.first(floor, shortest) {
+            First::Early(path) => {
+                on_path(&path);
+                let bounds = Bounds { width_at_most: self.graph.cap(), cost_at_least: self.graph.remaining(START) };
+                let proof = self.proof(Some(&path), floor, bounds);
+                Ascent { found: path, proof, at_most: self.graph.cap(), is_by_cost: false }
+            }
+            First::Answer(outcome) => match told(outcome, None, on_path) {
+                Outcome::Solved { found, proof }
+                | Outcome::OutOfBudget { limit: Limit::Precision, best: Some(found), proof } => {
+                    let at_most = proof.width_at_most.min(self.graph.cap());
+                    Ascent { found, proof, at_most, is_by_cost: true }
+                }
+                unsolved => return unsolved,
+            },
         };
-        let at_most = proof.width_at_most.min(self.graph.cap());
-        let mut ascent = Ascent { found, proof, at_most };
         let limit = ascent.climb(self, shortest, on_path);
-        let Ascent { found, proof, at_most } = ascent;
+        let Ascent { found, proof, at_most, is_by_cost } = ascent;
         let width_at_most = at_most.max(found.width.lower);
         let as_good = self.tie(width_at_most).min(found.width.lower).max(floor);
-        if limit.is_some() || proof.floor <= as_good {
+        if limit.is_some() || (is_by_cost && proof.floor <= as_good) {
             let limit = limit.or((!proof.cost_optimal).then_some(Limit::Precision));
             let bounds = Bounds { width_at_most, cost_at_least: proof.cost_at_least };
             return self.conclude(Some(found), limit, proof.floor, bounds);
         }
-        // The floor of the last search was above the least width that is as good: a cheaper path may be between.
+        // It was found in a hurry, or the floor of the last search was above the least width that is as good: there may be a cheaper
+        // path.
         let answer = shortest(self, as_good);
         let limit = if matches!(answer, Outcome::Impossible) { Some(Limit::Precision) } else { answer.limit() };
         let cost_at_least = answer.proof().map_or(0, |proof| proof.cost_at_least);
@@ -107,15 +124,6 @@ impl<S: Space> Search<'_, S> {
     /// Some path of a width of at least `floor`, found greedily; without a limit or a path there is none.
     fn hurry(&mut self, floor: f64) -> ShortestRun {
         self.run_shortest(&Task { greed: GREED, ..Task::whole(floor, u32::MAX) })
-    }
-
-    /// Does some work with so many expansions, and says whether it was these that ended it.
-    fn sharing<T>(&mut self, share: u64, work: impl FnOnce(&mut Self) -> T) -> (T, bool) {
-        self.pause_at = self.statistics().expanded.saturating_add(share);
-        let done = work(self);
-        let is_paused = std::mem::take(&mut self.is_paused);
-        self.pause_at = u64::MAX;
-        (done, is_paused)
     }
 
     /// The least width that counts as more than `width`: half the tolerance above it, so that finding none as wide
@@ -153,6 +161,14 @@ fn told<S, A>(
     }
 }
 
+/// What a search in a hurry and one for the least cost come to, in turns.
+enum First<P> {
+    /// The one for the least cost ended first.
+    Answer(Outcome<P>),
+    /// The one in a hurry found a path.
+    Early(P),
+}
+
 /// The widest path so far, on the way to wider ones.
 struct Ascent<P> {
     found: P,
@@ -160,6 +176,8 @@ struct Ascent<P> {
     proof: Proof,
     /// No path is wider.
     at_most: f64,
+    /// Whether that was a search for the least cost.
+    is_by_cost: bool,
 }
 
 /// How a search with a floor ended.
@@ -192,8 +210,7 @@ where
             return None;
         }
         loop {
-            let wider = search.wider(self.found.width.lower);
-            match self.attempt(search, wider, share, shortest, on_path) {
+            match self.attempt(search, self.possible(search), share, shortest, on_path) {
                 Attempt::Wider => continue,
                 Attempt::Widest => return None,
                 // Intervals hold the floor.
@@ -202,8 +219,9 @@ where
                 Attempt::Paused => {}
             }
             loop {
-                let half_way = f64::midpoint(self.found.width.lower, self.at_most);
-                if !(half_way > search.wider(self.found.width.lower) && half_way.is_finite()) {
+                let possible = self.possible(search);
+                let half_way = f64::midpoint(possible, self.at_most);
+                if !(half_way > search.wider(possible) && half_way.is_finite()) {
                     break;
                 }
                 match self.attempt(search, half_way, share, shortest, on_path) {
@@ -233,11 +251,12 @@ where
             Outcome::Impossible => floor.next_down(),
             Outcome::Solved { proof, .. } | Outcome::OutOfBudget { proof, .. } => proof.width_at_most,
         });
+        self.at_most = self.at_most.min(search.classes.width_at_most());
         let wider = outcome.best().filter(|path| path.width.lower > self.found.width.lower).cloned();
         let is_wider = wider.is_some();
         if let (Some(path), Some(proof)) = (wider, outcome.proof()) {
             on_path(&path);
-            (self.found, self.proof) = (path, *proof);
+            (self.found, self.proof, self.is_by_cost) = (path, *proof, true);
         }
         match outcome.limit() {
             _ if self.is_widest(search) => Attempt::Widest,
@@ -246,6 +265,12 @@ where
             Some(limit) => Attempt::Ended(limit),
             None => Attempt::Narrower,
         }
+    }
+
+    /// The least width that a wider path has, or a larger one that some path is known to have.
+    fn possible<D: Space>(&self, search: &Search<'_, D>) -> f64 {
+        let wider = search.wider(self.found.width.lower);
+        search.classes.joined.map_or(wider, |joined| joined.max(wider))
     }
 
     fn is_widest<D: Space>(&self, search: &Search<'_, D>) -> bool {

@@ -194,12 +194,15 @@ impl<S: Reversible> Search<'_, S> {
         let after = goal.labels.way_to(last).into_iter().rev().map(|arrow| (End::Goal, arrow));
         let way: Vec<(End, Arrow)> = before.chain([(end, arrow)]).chain(after).collect();
         let stands = way.iter().all(|&(end, arrow)| self.all_stand(end, &[arrow], both.floor));
-        stands.then(|| Path::new(way.iter().map(|&(end, arrow)| self.step(end, arrow)).collect()))
+        stands.then(|| {
+            let path = Path::new(way.iter().map(|&(end, arrow)| self.step(end, arrow)).collect());
+            self.found(path)
+        })
     }
 }
 
 impl End {
-    fn other(self) -> Self {
+    pub fn other(self) -> Self {
         match self {
             End::Start => End::Goal,
             End::Goal => End::Start,

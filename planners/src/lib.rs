@@ -12,6 +12,7 @@
 //! | [`Search::widest`] | largest width | lazy best-first with the max-min algebra |
 //! | [`Search::shortest`] | least cost with width at least a floor | lazy A*, re-opening |
 //! | [`Search::from_both_ends`] | the same, where goals are known | lazy bidirectional A* |
+//! | [`Search::from_both_ends_by_class`] | the same, where the space repeats itself | the same, and exhausting classes of states |
 //! | [`Search::margin`] | largest width, then least cost | both, one after the other |
 //! | [`Search::anytime_margin`] | the same, with better and better paths before | greedy, then the cheapest for ever higher floors |
 //! | [`Search::k_best`] | the K cheapest with width at least a floor | Yen, with places up to the order of independent actions |
@@ -43,11 +44,13 @@ pub mod algebra;
 pub mod toy;
 
 mod anytime;
+mod apart;
 mod both_ends;
 mod brackets;
 mod budget;
 mod graph;
 mod k_best;
+mod lattice;
 mod margin;
 mod outcome;
 mod pareto;
@@ -63,7 +66,8 @@ mod widest;
 
 pub use anytime::Shortest;
 pub use budget::{Budget, Limit, Statistics};
+pub use lattice::Displacement;
 pub use outcome::{Outcome, Path, Proof, Step};
 pub use progress::{Pass, Progress};
 pub use search::{Options, PathOf, Search};
-pub use space::{Reversible, Space, Transition, Width};
+pub use space::{Periodic, Reversible, Space, Transition, Width};

@@ -1,12 +1,16 @@
 //! A search over one space: what its engines share.
 
 use crate::algebra::Additive;
+use crate::apart::Classes;
 use crate::budget::{Budget, Limit, Statistics};
 use crate::graph::{Arrow, End, Graph, START};
 use crate::outcome::{Outcome, Path, Proof, Step};
 use crate::progress::{Monitor, Progress};
 use crate::space::Space;
 use crate::tree::Tree;
+
+/// Expansions after which a proof first pauses for an attempt at something else.
+pub(crate) const FIRST_SHARE: u64 = 128;
 
 /// A path of a space.
 pub type PathOf<S> = Path<<S as Space>::State, <S as Space>::Action>;
@@ -52,6 +56,10 @@ pub struct Search<'a, S: Space> {
     pub(crate) is_paused: bool,
     /// What progress reports say of widths from the beginning.
     pub(crate) known: Known,
+    /// Width of the widest path found so far.
+    pub(crate) widest: Option<f64>,
+    /// What is known of the classes of states, where a space has them.
+    pub(crate) classes: Classes,
 }
 
 /// What is known of widths before a search begins.
@@ -80,6 +88,8 @@ impl<'a, S: Space> Search<'a, S> {
             pause_at: u64::MAX,
             is_paused: false,
             known: Known::default(),
+            widest: None,
+            classes: Classes::default(),
         }
     }
 
@@ -119,7 +129,8 @@ impl<'a, S: Space> Search<'a, S> {
 
     /// Books what has been done, with the memory of queues and labels.
     pub(crate) fn book(&mut self, open_bytes: usize) {
-        let counted = || self.graph.bytes() + open_bytes + self.graph.space().memory_bytes();
+        let held_bytes = open_bytes + self.classes.bytes();
+        let counted = || self.graph.bytes() + held_bytes + self.graph.space().memory_bytes();
         let bytes = self.monitor.measured().unwrap_or_else(counted);
         let statistics = &mut self.monitor.progress.statistics;
         statistics.generated = self.graph.generated;
@@ -137,6 +148,19 @@ impl<'a, S: Space> Search<'a, S> {
         limit.or(self.is_paused.then_some(Limit::Expansions))
     }
 
+    /// Does some work with so many expansions, and says whether it was these that ended it. Within the share of other
+    /// work it gets no more than is left of that.
+    pub(crate) fn sharing<T>(&mut self, share: u64, work: impl FnOnce(&mut Self) -> T) -> (T, bool) {
+        let outer = self.pause_at;
+        self.pause_at = self.statistics().expanded.saturating_add(share).min(outer);
+        self.is_paused = false;
+        let done = work(self);
+        let is_paused = self.is_paused;
+        self.pause_at = outer;
+        self.is_paused = is_paused && self.statistics().expanded >= outer;
+        (done, is_paused)
+    }
+
     /// Starts the books of a new question.
     pub(crate) fn begin(&mut self) {
         let Known { width, width_at_most } = self.known;
@@ -146,7 +170,15 @@ impl<'a, S: Space> Search<'a, S> {
 
     /// The path that a sequence of transitions makes, its widths as tight as they can be.
     pub(crate) fn path(&mut self, arrows: &[Arrow]) -> PathOf<S> {
-        Path::new(arrows.iter().map(|&arrow| self.step(End::Start, arrow)).collect())
+        let path = Path::new(arrows.iter().map(|&arrow| self.step(End::Start, arrow)).collect());
+        self.found(path)
+    }
+
+    /// Books a path.
+    pub(crate) fn found(&mut self, path: PathOf<S>) -> PathOf<S> {
+        let width = path.width.lower;
+        self.widest = Some(self.widest.map_or(width, |known| known.max(width)));
+        path
     }
 
     /// A transition of a path, its width as tight as it can be.

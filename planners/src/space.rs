@@ -2,6 +2,8 @@
 
 use std::hash::Hash;
 
+use crate::lattice::Displacement;
+
 /// An interval that holds a transition's width, both ends included.
 ///
 /// `NEG_INFINITY` at the upper end means that the transition is impossible at
@@ -124,5 +126,23 @@ pub trait Reversible: Space {
     fn spent_cost(&self, state: &Self::State) -> Option<u32> {
         let _ = state;
         Some(0)
+    }
+}
+
+/// A space that looks the same from many states, up to a displacement: the ground on which something moves is flat and endless,
+/// say, and only the goal is somewhere.
+///
+/// Let the transitions of the space be those between states that are no goals. If `class(s)` is `(r, d)`, then `r` is no
+/// goal, `class(r)` is `(r, 0)`, and to every transition between `s` and a state of class `(r', d')` belongs one between
+/// `r` and a state of class `(r', d' - d)`, in the same direction and of the same width. And every transition between two
+/// of these states can be taken back by one of the same width.
+pub trait Periodic: Reversible {
+    /// The state that represents a state's class, and the displacement from it. The state is no goal.
+    fn class(&self, state: &Self::State) -> (Self::State, Displacement);
+
+    /// Like the state that [`class`](Periodic::class) gives, of classes that may be larger: those of states that symmetries other than
+    /// displacements exchange. What is said there about transitions holds without the displacements.
+    fn kind(&self, state: &Self::State) -> Self::State {
+        self.class(state).0
     }
 }

@@ -44,7 +44,7 @@ impl Domain<'_> {
     }
 
     /// Whether a layout holds with every possible connection engaged, as a neighbour of another.
-    fn decides_settled(&self, layout: &Layout, near: &Layout, floor: f64) -> Worst {
+    pub(super) fn decides_settled(&self, layout: &Layout, near: &Layout, floor: f64) -> Worst {
         let bonds = layout.touching();
         let known = self.known(layout, &bonds, floor);
         known.unwrap_or_else(|| {

@@ -133,13 +133,14 @@ impl Task<'_> {
         planners::Options { tolerance: MARGIN_TOLERANCE, budget, ..planners::Options::default() }
     }
 
-    /// What is in the way of a plan, by a search that takes about as long again as the one before. `unmoved` says which
-    /// modules are where they were at the start in all of some states.
+    /// What is in the way of a plan, by a search that takes about as long again as the one before, of a space whose shortest
+    /// paths are found by `shortest`. `unmoved` says which modules are where they were at the start in all of some states.
     pub fn in_the_way<S: Space, T: Translation<S>>(
         &self,
         space: &S,
         translation: &T,
         report: &ReportOf<T, S>,
+        shortest: Shortest<'_, S>,
         unmoved: Unmoved<'_, S>,
     ) -> Option<InTheWay<T::Action, T::Connection>>
     where
@@ -156,7 +157,6 @@ impl Task<'_> {
         options.budget.max_expansions = Some(report.statistics.expanded.saturating_mul(2).max(EXPLANATION));
         let mut search = Search::new(space, options);
         // With a path in hand early, whatever ends it.
-        let shortest: Shortest<'_, S> = &|search, floor| search.shortest(floor);
         let widest = search.anytime_margin(f64::NEG_INFINITY, shortest, &mut |_| {});
         let plan = widest.best().map(|path| translation.plan(&actions::<S>(path)));
         let at_most = widest.proof().map_or(f64::NEG_INFINITY, |proof| proof.width_at_most);

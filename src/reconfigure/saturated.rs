@@ -29,6 +29,11 @@ pub struct State {
 }
 
 impl State {
+    /// A placement that is not the goal yet.
+    pub fn of(layout: Layout) -> Self {
+        Self { layout, arrived: false }
+    }
+
     /// Where the modules are.
     pub fn layout(&self) -> &Layout {
         &self.layout

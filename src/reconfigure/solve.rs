@@ -3,7 +3,7 @@
 
 use std::time::Instant;
 
-use planners::{Reversible, Space, Width};
+use planners::{Reversible, Shortest, Space, Width};
 
 use crate::robot::{Configuration, FaceConnection, Goal};
 use crate::statics::Bracket;
@@ -14,6 +14,7 @@ use super::compose::{compose, expand, ports};
 use super::domain::{Domain, width};
 use super::engines::{Task, Translation};
 use super::large::{self, EXACT_MODULES, decompose};
+use super::open_ground::OpenGround;
 use super::options::{Event, Method, Options, Reduction};
 use super::oracle::Worst;
 use super::plan::{Plan, Report};
@@ -22,6 +23,7 @@ use super::problem::Problem;
 use super::refusal::{Impossible, Refusal, Rejection, Which};
 use super::saturated::{self, Saturated};
 use super::step::Step;
+use super::symmetry::Symmetry;
 use super::trace::Trace;
 
 /// Plans how to get from `start` to `goal` with every transient state proved stable.
@@ -72,6 +74,10 @@ pub fn solve(
                 // Where it is known what the goal looks like, the search comes from there as well.
                 match options.baseline {
                     None if space.goals().is_empty() => task.run(&space, &plans, on_event),
+                    None if let Some(symmetry) = symmetry(&domain) => {
+                        let space = OpenGround::new(&domain, space, symmetry);
+                        task.run_with(&space, &plans, &|search, floor| search.from_both_ends_by_class(floor), on_event)
+                    }
                     None => task.run_with(&space, &plans, &|search, floor| search.from_both_ends(floor), on_event),
                     Some(Baseline::Blind) => task.run(&Blind(&space), &plans, on_event),
                     Some(Baseline::Eager) => {
@@ -93,10 +99,28 @@ pub fn solve(
     }
     let space = Saturated::new(&domain, ends.start_width(), ends.at_most());
     let steps = |path: &[saturated::Action]| expand(&problem, path);
-    report.in_the_way = task.in_the_way(&space, &Plans { domain: &domain, steps }, &report, &|reached| {
+    let plans = Plans { domain: &domain, steps };
+    let unmoved = |reached: &[&saturated::State]| {
         Some(problem.unmoved(&reached.iter().map(|state| state.layout()).collect::<Vec<_>>()))
-    });
+    };
+    report.in_the_way = match symmetry(&domain) {
+        Some(symmetry) => {
+            let space = OpenGround::new(&domain, space, symmetry);
+            let shortest: Shortest<'_, OpenGround> = &|search, floor| search.from_both_ends_by_class(floor);
+            task.in_the_way(&space, &plans, &report, shortest, &unmoved)
+        }
+        None => task.in_the_way(&space, &plans, &report, &|search, floor| search.shortest(floor), &unmoved),
+    };
     finished(report, &domain, began)
+}
+
+/// The symmetries of a problem that leave few states of it and know its goal. What need not hold together can drift apart for ever,
+/// and what need not stand can leave the ground.
+fn symmetry(domain: &Domain) -> Option<Symmetry> {
+    let problem = domain.problem;
+    let is_finite = domain.stability && problem.must_stay_connected();
+    let is_known = !problem.goal().is_free() && !problem.turns();
+    Symmetry::of(problem).filter(|_| is_finite && is_known)
 }
 
 /// The report with what it took.

@@ -6,6 +6,7 @@ mod ascent;
 mod both_ends;
 mod brackets;
 mod budgets;
+mod classes;
 mod edge_cases;
 mod k_best;
 mod laziness;

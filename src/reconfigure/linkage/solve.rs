@@ -64,7 +64,9 @@ pub fn solve(
         }
     };
     let space = Saturated::new(&domain, ends.width(), ends.at_most());
-    report.in_the_way = task.in_the_way(&space, &Plans(&domain), &report, &|reached| unmoved(&domain, reached));
+    let unmoved = |reached: &[&saturated::State]| unmoved(&domain, reached);
+    let plans = Plans(&domain);
+    report.in_the_way = task.in_the_way(&space, &plans, &report, &|search, floor| search.shortest(floor), &unmoved);
     if let Some(fault) = domain.oracle.fault() {
         return Err(Refusal::Structure(fault));
     }

@@ -4,6 +4,7 @@ mod agreement;
 mod carrying;
 mod heuristics;
 mod motions;
+mod open_ground;
 mod outcomes;
 mod ranking;
 mod reports;
