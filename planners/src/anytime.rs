@@ -11,6 +11,9 @@ use crate::space::Space;
 /// How much the bound on the remaining cost counts in a hurry.
 const GREED: u32 = 4;
 
+/// Expansions within which the cheapest path is looked for before a greedy one: where they do, nothing is looked for twice.
+const FIRST_LOOK: u64 = 64;
+
 /// Expansions after which a proof first pauses for an attempt at a better path.
 const FIRST_SHARE: u64 = 128;
 
@@ -20,8 +23,8 @@ pub type Shortest<'e, S> = &'e dyn for<'s> Fn(&mut Search<'s, S>, f64) -> Outcom
 impl<S: Space> Search<'_, S> {
     /// The cheapest path of a width of at least `floor`, by `shortest`, with another path in hand before.
     ///
-    /// Every path that is better than those before it goes to `on_path`: first one that a greedy search finds soon, where the
-    /// space has bounds on remaining costs to be greedy by, and then the cheapest. Both take turns as long as neither
+    /// Every path that is better than those before it goes to `on_path`: where the cheapest is not found at once, first one that
+    /// a greedy search finds soon, if the space has bounds on remaining costs to be greedy by. Both take turns as long as neither
     /// has found anything, so that where `shortest` soon proves that there is nothing, no more is looked for.
     ///
     /// # Guarantees
@@ -35,6 +38,10 @@ impl<S: Space> Search<'_, S> {
     ) -> Outcome<PathOf<S>> {
         if matches!(self.graph.remaining(START), 0 | DEAD_END) {
             return told(shortest(self, floor), None, on_path);
+        }
+        let (outcome, is_paused) = self.sharing(FIRST_LOOK, |search| shortest(search, floor));
+        if !is_paused {
+            return told(outcome, None, on_path);
         }
         let mut share = FIRST_SHARE;
         let early = loop {
