@@ -1,6 +1,7 @@
 //! The planner against the two cheapest planners that one could think of, problem by problem.
 
 use std::fmt::Write as _;
+use std::io::Write as _;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
@@ -103,11 +104,13 @@ fn compare_one(problem: &Problem, ratios: &mut [Ratios; 2], record: &mut Record)
     let in_time = ratios[0].add(oracle, eager, mark[0] == ">");
     let in_expansions = ratios[1].add(expanded as f64, blind as f64, mark[1] == ">");
     let [eager_is, blind_is] = mark;
-    let _ = writeln!(
-        record.text,
+    let row = format!(
         "| {name} | {moves} | {oracle:.4} | {eager_is}{eager:.3} | {eager_is}{in_time:.1} | {expanded} | \
-         {blind_is}{blind} | {blind_is}{in_expansions:.1} |"
+         {blind_is}{blind} | {blind_is}{in_expansions:.1} |\n"
     );
+    // It takes minutes until all are there.
+    let _ = std::io::stderr().write_all(row.as_bytes());
+    record.text += &row;
     let _ = writeln!(record.table, "eager,{name},{oracle},{eager},{eager_is}{in_time}");
     let _ = writeln!(record.table, "blind,{name},{expanded},{blind},{blind_is}{in_expansions}");
 }
