@@ -2,33 +2,33 @@
 //!
 //!     cargo bench --bench planning
 //!
-//! On the planning problems of the library, with one thread: what lazy evaluation saves against evaluating every
-//! successor by cold solves, and what estimates and the search from both ends save in expansions. Then the
+//! On the cubes of the standard suite and on the planning problems of the library, with one thread: what lazy evaluation
+//! saves of the oracle's time against evaluating every successor by cold solves, and what estimates save in expansions. Then the
 //! margin-optimal plans of eight cubes with their proofs, and where they are kept beside the repository the shortest plans of
 //! RoFI modules without gravity. Every answer is checked against the manifest before it counts. Writes
 //! `benches/record/planning.{md,csv}`.
 
+#[path = "planning/baselines.rs"]
+mod baselines;
 #[path = "support/machine.rs"]
 mod machine;
 #[path = "support/publish.rs"]
 mod publish;
 
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use cpu_time::ProcessTime;
 use problems::{Manifest, PlanningCase};
-use steadfast::io::{LatticeProblem, SourceFile, no_references, read_linkage, read_problem};
-use steadfast::reconfigure::{Baseline, Objective, Options, Outcome, Report, linkage, solve};
+use steadfast::generate::{Family, Pair, generate};
+use steadfast::io::{LatticeProblem, SourceFile, no_references, read_linkage, read_problem, read_suite};
+use steadfast::reconfigure::{Objective, Options, Outcome, Report, linkage, solve};
 use steadfast::robot::Matching;
 use steadfast::robot::linkage::Goal;
+use steadfast::suite::{Job, Planner};
 
-/// Least promised ratios: of processor time without lazy evaluation, and of expansions without estimates.
-const LAZY: f64 = 20.0;
-const GUIDED: f64 = 10.0;
-
-/// A baseline is given up after so many times the expansions of the planner; its ratio is then at least that.
-const PATIENCE: u64 = 30;
+use baselines::Problem;
 
 /// Problems with more modules are left out of the comparison with baselines.
 const SMALL: usize = 6;
@@ -58,51 +58,35 @@ fn timed(problem: &LatticeProblem, options: &Options) -> (f64, Report) {
     (began.elapsed().as_secs_f64(), report)
 }
 
-/// Both baselines on every small problem that has a plan with moves under gravity.
+/// Both baselines on the cubes of the standard suite that are searched exactly, and on the library's problems that have a
+/// plan with moves under gravity.
 fn baselines(manifest: &Manifest, quick: bool, record: &mut Record) {
+    let most = if quick { 2 } else { usize::MAX };
+    record.text += "## Baselines\n\n";
+    record.text += baselines::METHOD;
+    baselines::compare("Cubes of the standard suite", of_suite().into_iter().take(most), true, record);
     let is_asked = |case: &PlanningCase| case.modules <= SMALL && case.moves.moves.is_some_and(|moves| moves > 0);
     let cases = manifest.cubes.iter().filter(|(name, case)| is_asked(case) && *name != "no_gravity");
-    record.text += &format!(
-        "## Baselines\n\nFewest moves. Processor seconds of the planner (all of it) and with every successor evaluated \
-         by cold solves; expansions, greedy search included, and from the start alone without estimates, given up \
-         after {PATIENCE} times as many.\n\n| problem | moves | s | s, eager | ratio | expanded | expanded, blind | ratio |\n\
-         | --- | --- | --- | --- | --- | --- | --- | --- |\n"
-    );
-    let mut sums = [0.0; 4];
-    for (name, case) in cases.take(if quick { 2 } else { usize::MAX }) {
-        let problem = read(name);
-        let options = Options { objective: Objective::Moves, ..Options::default() };
-        let (ours, report) = timed(&problem, &options);
-        check(name, &report, case.moves.moves);
-        let expanded = report.statistics.expanded;
-        let (eager, report) = timed(&problem, &Options { baseline: Some(Baseline::Eager), ..options.clone() });
-        check(name, &report, case.moves.moves);
-        let most = Some(expanded * PATIENCE);
-        let blind = Options { baseline: Some(Baseline::Blind), max_expansions: most, ..options };
-        let (_, report) = timed(&problem, &blind);
-        let blind = report.statistics.expanded;
-        if report.outcome == Outcome::Solved {
-            check(name, &report, case.moves.moves);
-        }
-        let moves = case.moves.moves.unwrap_or_default();
-        let (in_time, in_expansions) = (eager / ours, blind as f64 / expanded as f64);
-        let _ = writeln!(
-            record.text,
-            "| {name} | {moves} | {ours:.3} | {eager:.3} | {in_time:.1} | {expanded} | {blind} | {in_expansions:.1} |"
-        );
-        let _ = writeln!(record.table, "eager,{name},{ours},{eager},{in_time}");
-        let _ = writeln!(record.table, "blind,{name},{expanded},{blind},{in_expansions}");
-        for (sum, more) in sums.iter_mut().zip([ours, eager, expanded as f64, blind as f64]) {
-            *sum += more;
-        }
-    }
-    let [ours, eager, expanded, blind] = sums;
-    let ratios = [(eager / ours, LAZY, "time"), (blind / expanded, GUIDED, "expansions")];
-    for (ratio, promised, what) in ratios {
-        let kept = if ratio >= promised { "kept" } else { "NOT KEPT" };
-        let _ =
-            writeln!(record.text, "\nAll together, ratio of {what}: {ratio:.1}; promised at least {promised}: {kept}.");
-    }
+    let of_library = cases.take(most).map(|(name, case)| {
+        let LatticeProblem { start, goal, .. } = read(name);
+        Problem { name: name.clone(), start, goal, moves: case.moves.moves }
+    });
+    baselines::compare("The library", of_library, false, record);
+}
+
+/// The problems of cubes that the standard suite searches exactly, each once.
+fn of_suite() -> Vec<Problem> {
+    let path = problems::root().join("suites/standard.toml");
+    let file = SourceFile::new("standard.toml", std::fs::read(path).expect("the suite is there"));
+    let jobs = read_suite(&file).expect("the suite is sound").jobs();
+    let cubes = jobs.iter().filter(|job| (job.request.family, job.planner) == (Family::Cubes, Planner::Exact));
+    let mut names = BTreeSet::new();
+    let each = cubes.filter(|job| names.insert(job.problem()));
+    let problem = |job: &Job| match generate(&job.request).expect("the suite's problems can be drawn").pair {
+        Pair::Lattice { start, goal } => Problem { name: job.problem(), start, goal, moves: None },
+        Pair::Linkage { .. } => unreachable!("cubes sit in a lattice"),
+    };
+    each.map(problem).collect()
 }
 
 /// Margin-optimal plans of eight cubes.

@@ -11,14 +11,17 @@ use crate::space::Space;
 /// How much the bound on the remaining cost counts in a hurry.
 const GREED: u32 = 4;
 
+/// Expansions within which the cheapest path is looked for before a greedy one: where they do, nothing is looked for twice.
+const FIRST_LOOK: u64 = 64;
+
 /// An engine that finds a cheapest path at least as wide as its floor, like [`Search::shortest`].
 pub type Shortest<'e, S> = &'e dyn for<'s> Fn(&mut Search<'s, S>, f64) -> Outcome<PathOf<S>>;
 
 impl<S: Space> Search<'_, S> {
     /// The cheapest path of a width of at least `floor`, by `shortest`, with another path in hand before.
     ///
-    /// Every path that is better than those before it goes to `on_path`: first one that a greedy search finds soon, where the
-    /// space has bounds on remaining costs to be greedy by, and then the cheapest. Both take turns as long as neither
+    /// Every path that is better than those before it goes to `on_path`: where the cheapest is not found at once, first one that
+    /// a greedy search finds soon, if the space has bounds on remaining costs to be greedy by. Both take turns as long as neither
     /// has found anything, so that where `shortest` soon proves that there is nothing, no more is looked for.
     ///
     /// # Guarantees
@@ -43,6 +46,10 @@ impl<S: Space> Search<'_, S> {
     fn first(&mut self, floor: f64, shortest: Shortest<'_, S>) -> First<PathOf<S>> {
         if matches!(self.graph.remaining(START), 0 | DEAD_END) {
             return First::Answer(shortest(self, floor));
+        }
+        let (outcome, is_paused) = self.sharing(FIRST_LOOK, |search| shortest(search, floor));
+        if !is_paused {
+            return First::Answer(outcome);
         }
         let mut share = FIRST_SHARE;
         loop {

@@ -183,6 +183,37 @@ impl<'a> Assembler<'a> {
     /// Two modules on their way carry no contact between them. With it the structure would be no weaker, since
     /// another contact never is a loss.
     pub fn assemble_moment(&self, state: &Moment) -> Assembly {
+        let poses = self.poses(state);
+        let mut assembly = self.held_together(state, &poses);
+        let held = self.held_pairs(&assembly, state);
+        self.add_resting_contacts(&mut assembly, state, &held, &poses);
+        self.add_moving_contacts(&mut assembly, state, &held, &poses);
+        self.add_environment_contacts(&mut assembly, 0..poses.len(), &poses);
+        assembly
+    }
+
+    /// The structure of a state with all modules held immovably but the one on its way, without the contacts that then
+    /// carry nothing: of the others among themselves and with their environment.
+    pub fn assemble_alone(&self, state: &Transient) -> Assembly {
+        let moment = state.into();
+        let poses = self.poses(&moment);
+        let mut assembly = self.held_together(&moment, &poses);
+        let held = self.held_pairs(&assembly, &moment);
+        self.add_moving_contacts(&mut assembly, &moment, &held, &poses);
+        let moving = state.moving.map(|moving| moving.module);
+        self.add_environment_contacts(&mut assembly, moving.into_iter(), &poses);
+        for (module, body) in assembly.structure.bodies.iter_mut().enumerate() {
+            body.fixed |= Some(module) != moving;
+        }
+        assembly
+    }
+
+    fn poses(&self, state: &Moment) -> Vec<Pose> {
+        (0..self.configuration.modules.len()).map(|module| self.pose(state, module)).collect()
+    }
+
+    /// The bodies of a state with what holds them together.
+    fn held_together(&self, state: &Moment, poses: &[Pose]) -> Assembly {
         let mut assembly = Assembly {
             structure: Structure {
                 gravity: self.configuration.gravity,
@@ -192,16 +223,13 @@ impl<'a> Assembler<'a> {
             connections: Vec::new(),
             contacts: Vec::new(),
         };
-        let poses: Vec<_> = (0..self.configuration.modules.len()).map(|m| self.pose(state, m)).collect();
-        self.add_bodies(&mut assembly, &poses);
+        self.add_bodies(&mut assembly, poses);
         for (index, engagement) in state.engaged.iter().enumerate() {
-            if let Some(connection) = self.connection(&mut assembly.structure, &poses, engagement) {
+            if let Some(connection) = self.connection(&mut assembly.structure, poses, engagement) {
                 assembly.structure.connections.push(connection);
                 assembly.connections.push(index);
             }
         }
-        self.add_module_contacts(&mut assembly, state, &poses);
-        self.add_environment_contacts(&mut assembly, &poses);
         assembly
     }
 
@@ -247,7 +275,8 @@ impl<'a> Assembler<'a> {
         Some(Connection { parent: Anchor::Body(parent), child: Anchor::Body(child), connector, frame })
     }
 
-    fn add_module_contacts(&self, assembly: &mut Assembly, state: &Moment, poses: &[Pose]) {
+    /// Pairs of modules whose connectors contain the contact between them, ascending.
+    fn held_pairs(&self, assembly: &Assembly, state: &Moment) -> Vec<[usize; 2]> {
         let mut held: Vec<[usize; 2]> = Vec::with_capacity(state.engaged.len());
         for &index in &assembly.connections {
             if let Engagement::Face { modules: [a, b], .. } = state.engaged[index]
@@ -257,13 +286,17 @@ impl<'a> Assembler<'a> {
             }
         }
         held.sort_unstable();
-        let carries = |a: usize, b: usize| !self.both_fixed(a, b) && held.binary_search(&[a.min(b), a.max(b)]).is_err();
+        held
+    }
 
-        let is_moving = |m: usize| state.moving.iter().any(|moving| moving.module == m);
-        let resting = state.placements.iter().enumerate().filter(|(m, _)| !is_moving(*m));
-        let occupancy = Occupancy::new(resting.map(|(m, placement)| (placement.cell, m)));
-        for (a, towards, b) in occupancy.touching_pairs() {
-            if carries(a, b) {
+    /// Whether contact between two modules carries anything beside what holds them.
+    fn carries(&self, held: &[[usize; 2]], a: usize, b: usize) -> bool {
+        !self.both_fixed(a, b) && held.binary_search(&[a.min(b), a.max(b)]).is_err()
+    }
+
+    fn add_resting_contacts(&self, assembly: &mut Assembly, state: &Moment, held: &[[usize; 2]], poses: &[Pose]) {
+        for (a, towards, b) in resting(state).touching_pairs() {
+            if self.carries(held, a, b) {
                 let points = self.surface(a, b).face_points(self.pitch);
                 let frame = towards.outward_frame();
                 let origin = centre(poses, a) + towards.normal() * (self.pitch / 2.0);
@@ -271,13 +304,16 @@ impl<'a> Assembler<'a> {
                 self.add_pair(assembly, a, b, ContactPatch { normal: -towards.normal(), points });
             }
         }
+    }
 
+    fn add_moving_contacts(&self, assembly: &mut Assembly, state: &Moment, held: &[[usize; 2]], poses: &[Pose]) {
+        let occupancy = resting(state);
         // Beyond the diagonal of a cube nothing can touch.
         let near = 1.8 * self.pitch;
         for m in state.moving.iter().map(|moving| moving.module) {
             let solid = self.solid(m, poses);
             for (_, other) in occupancy.iter() {
-                if (centre(poses, other) - centre(poses, m)).amax() > near || !carries(m, other) {
+                if (centre(poses, other) - centre(poses, m)).amax() > near || !self.carries(held, m, other) {
                     continue;
                 }
                 if let Some(mut patch) = contact(&solid, &self.solid(other, poses), TOUCH * self.pitch) {
@@ -293,12 +329,9 @@ impl<'a> Assembler<'a> {
         add_contacts(assembly, body, Touched::Module(against), friction, patch);
     }
 
-    fn add_environment_contacts(&self, assembly: &mut Assembly, poses: &[Pose]) {
+    fn add_environment_contacts(&self, assembly: &mut Assembly, modules: impl Iterator<Item = usize>, poses: &[Pose]) {
         let tolerance = TOUCH * self.pitch;
-        for (module, description) in self.configuration.modules.iter().enumerate() {
-            if description.fixed {
-                continue;
-            }
+        for module in modules.filter(|&module| !self.configuration.modules[module].fixed) {
             let solid = self.solid(module, poses);
             for (what, patch) in self.surroundings.contacts(&solid, tolerance) {
                 let friction = what.friction(&self.configuration.environment);
@@ -320,6 +353,13 @@ impl<'a> Assembler<'a> {
     fn solid(&self, module: usize, poses: &[Pose]) -> Solid {
         Solid::new(self.configuration.module_type(module).body().shape.clone(), poses[module])
     }
+}
+
+/// Where the modules are that are not on their way.
+fn resting(state: &Moment) -> Occupancy {
+    let is_moving = |m: usize| state.moving.iter().any(|moving| moving.module == m);
+    let resting = state.placements.iter().enumerate().filter(|(m, _)| !is_moving(*m));
+    Occupancy::new(resting.map(|(m, placement)| (placement.cell, m)))
 }
 
 fn centre(poses: &[Pose], module: usize) -> Vec3 {

@@ -7,9 +7,10 @@ use planners::{Space, Transition, Width};
 /// A planner that goes without something.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Baseline {
-    /// Every successor is evaluated when it is generated, by cold solves for its margin.
+    /// Every successor is evaluated when it is generated, by cold solves for the margins of all its transient states, and
+    /// nothing is remembered of the answers. The search comes from the start only, and is after the best plan at once.
     Eager,
-    /// Nothing is known of how far it is to the goal, and the search comes from the start only.
+    /// Nothing is known of how far it is to the goal. The search comes from the start only, and is after the best plan at once.
     Blind,
 }
 

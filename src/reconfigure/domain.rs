@@ -1,6 +1,9 @@
 //! What both search spaces of a robot share: moves that are free of collision,
 //! connectedness, and margins as widths.
 
+use std::sync::Mutex;
+use std::time::Duration;
+
 use planners::Width;
 
 use crate::geometry::{Solid, Surroundings, TOUCH};
@@ -9,6 +12,7 @@ use crate::spatial::{Pose, Rotation, Vec3};
 use crate::statics::Bracket;
 
 use super::course::motion;
+use super::held::Held;
 use super::layout::{Bond, Layout, Placed};
 use super::local::{Memo, Neighbourhood, plane};
 use super::moves::Move;
@@ -25,6 +29,8 @@ pub struct Domain<'a> {
     pub oracle: Oracle<'a>,
     /// Whether states must be stable at all.
     pub stability: bool,
+    /// Whether nothing is remembered of the oracle's answers, and nothing known without asking: for comparison.
+    forgets: bool,
     surroundings: Surroundings,
     off_limits: Surroundings,
     /// Cells of modules that may not move; no other module ever comes there.
@@ -34,6 +40,10 @@ pub struct Domain<'a> {
     clear: Memo<(Move, usize), bool>,
     /// Margins at rest.
     at_rest: Memo<(Layout, Vec<Bond>), Worst>,
+    /// How modules are held on their way.
+    held: Mutex<Held>,
+    /// Margins of moves.
+    courses: Memo<(Layout, Vec<Bond>, Move), Worst>,
     /// Bounds on margins at rest.
     pub(super) bounds: Memo<(Layout, Vec<Bond>), Worst>,
     /// What states at rest left for their neighbours.
@@ -50,16 +60,33 @@ impl<'a> Domain<'a> {
             problem,
             oracle: Oracle::new(start),
             stability,
+            forgets: false,
             surroundings: Surroundings::new(&start.environment),
             off_limits: Surroundings::new(&start.require.off_limits()),
             stay: start.require.stay.iter().map(|&module| start.modules[module].placement.cell).collect(),
             pitch: start.pitch(),
             clear: Memo::new(),
             at_rest: Memo::new(),
+            held: Mutex::default(),
+            courses: Memo::new(),
             bounds: Memo::new(),
             recollection: Recollection::default(),
             at_most: Memo::new(),
         }
+    }
+
+    /// With a clock that says what the oracle takes.
+    #[must_use]
+    pub fn timed_by(mut self, clock: Option<fn() -> Duration>) -> Self {
+        self.oracle.clock = clock;
+        self
+    }
+
+    /// Without memory of what the oracle answered, and without bounds of its own: every margin is asked for.
+    #[must_use]
+    pub fn forgetting(mut self) -> Self {
+        self.forgets = true;
+        self
     }
 
     /// Approximate memory of all answers that are kept, in bytes.
@@ -68,8 +95,9 @@ impl<'a> Domain<'a> {
         // Every module of a lattice has about two connections of its own, and a pivot a handful of neighbours.
         let at_rest = modules * (size_of::<Placed>() + 2 * size_of::<Bond>());
         let at_most = 8 * size_of::<(Cell, usize)>();
-        let at_rest = self.at_rest.bytes(at_rest) + self.bounds.bytes(at_rest);
-        self.clear.bytes(0) + at_rest + self.at_most.bytes(at_most) + self.recollection.bytes()
+        let at_rest = self.at_rest.bytes(at_rest) + self.courses.bytes(at_rest) + self.bounds.bytes(at_rest);
+        let held = self.held.lock().expect("no thread panics while it asks how modules are held").bytes();
+        self.clear.bytes(0) + at_rest + self.at_most.bytes(at_most) + self.recollection.bytes() + held
     }
 
     /// The moves that fit among the modules, hit neither ground nor obstacles and are
@@ -140,15 +168,18 @@ impl<'a> Domain<'a> {
 
     /// Margin at rest.
     pub fn of_state(&self, layout: &Layout, bonds: &[Bond]) -> Worst {
-        let key = (layout.clone(), bonds.to_vec());
-        self.at_rest.get(key, |_| self.oracle.of_state(&self.problem.placements(layout), bonds))
+        let ask = || self.oracle.of_state(&self.problem.placements(layout), bonds);
+        if self.forgets {
+            return ask();
+        }
+        self.at_rest.get((layout.clone(), bonds.to_vec()), |_| ask())
     }
 
     /// Upper bound on the margin of a move, whatever is engaged, from the
     /// moving module and its neighbours alone: infinite for translations, which many
     /// faces hold, and for rotations along ground or obstacles.
     pub fn at_most(&self, layout: &Layout, step: Move) -> f64 {
-        if !self.stability || self.is_along_environment(step) {
+        if !self.stability || self.forgets || self.is_along_environment(step) {
             return f64::INFINITY;
         }
         let Some(pivot) = Neighbourhood::new(self.problem, layout, step) else { return f64::INFINITY };
@@ -160,16 +191,29 @@ impl<'a> Domain<'a> {
     /// touches that box across the axis. Its other sides the module reaches at the ends only.
     fn is_along_environment(&self, step: Move) -> bool {
         let Some((cells, axis)) = plane(step) else { return false };
+        let tolerance = TOUCH * self.pitch;
+        let mut wider = Vec3::repeat(-tolerance);
+        wider[axis.axis()] += 2.0 * tolerance;
+        let room = self.around(&cells, wider);
+        self.surroundings.may_touch(&room)
+    }
+
+    /// Whether the module of a move may touch ground or an obstacle anywhere on its way: one that reaches into the smallest
+    /// box around all the cells that it passes through, or touches it.
+    pub(super) fn is_beside_environment(&self, step: Move) -> bool {
+        let cells: Vec<Cell> = step.room().into_iter().chain([step.from, step.to()]).collect();
+        self.surroundings.may_touch(&self.around(&cells, Vec3::repeat(TOUCH * self.pitch)))
+    }
+
+    /// The smallest box around some cells, wider by so much on either side.
+    fn around(&self, cells: &[Cell], wider: Vec3) -> Solid {
         let corner = |extreme: fn(i32, i32) -> i32| -> Cell {
-            std::array::from_fn(|i| cells.iter().map(|cell| cell[i]).reduce(extreme).expect("the module's own cell"))
+            std::array::from_fn(|i| cells.iter().map(|cell| cell[i]).reduce(extreme).expect("a module's own cell"))
         };
         let [low, high] = [corner(i32::min), corner(i32::max)].map(|cell| Placement::new(cell).centre(self.pitch));
-        let tolerance = TOUCH * self.pitch;
-        let mut half_extents = (high - low) / 2.0 + Vec3::repeat(self.pitch / 2.0 - tolerance);
-        half_extents[axis.axis()] += 2.0 * tolerance;
-        let centre = (low + high) / 2.0;
-        let room = Solid::new(Shape::Cuboid { half_extents }, Pose::from_parts(centre.into(), Rotation::identity()));
-        self.surroundings.may_touch(&room)
+        let half_extents = (high - low) / 2.0 + Vec3::repeat(self.pitch / 2.0) + wider;
+        let centre = Pose::from_parts(((low + high) / 2.0).into(), Rotation::identity());
+        Solid::new(Shape::Cuboid { half_extents }, centre)
     }
 
     /// Margin of a move out of a state with these connections: of all its
@@ -178,7 +222,17 @@ impl<'a> Domain<'a> {
     /// Stops as soon as one state's margin is proved to be below `floor`; then
     /// the lower end is minus infinity.
     pub fn of_move(&self, layout: &Layout, bonds: &[Bond], step: Move, floor: f64) -> Worst {
-        let course = || self.oracle.of_move(self.problem.placements(layout), bonds, step, floor);
+        let ask = || self.oracle.of_move(self.problem.placements(layout), bonds, step, floor);
+        let by_its_hold = || {
+            let mut held = self.held.lock().expect("no thread panics while it asks how modules are held");
+            let is_along = self.is_beside_environment(step);
+            self.oracle.timed(|| held.margin((self.problem, &self.oracle), layout, bonds, step, is_along))
+        };
+        let course = || match floor == f64::NEG_INFINITY && !self.forgets {
+            // Whole answers come from the search to the plan.
+            true => self.courses.get((layout.clone(), bonds.to_vec(), step), |_| by_its_hold().unwrap_or_else(ask)),
+            false => ask(),
+        };
         match step.motion {
             // The state at rest after a translation is the one at its last phase.
             Motion::Translation { .. } => course(),

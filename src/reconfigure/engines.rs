@@ -181,6 +181,8 @@ impl Task<'_> {
         let is_by_margin = self.options.objective == Objective::Margin;
         let outcome = match is_by_margin {
             true => search.anytime_margin(floor, shortest, on_path),
+            // To compare with, a search as plain as can be.
+            false if self.options.baseline.is_some() => shortest(search, floor),
             false => search.anytime_shortest(floor, shortest, on_path),
         };
         let mut answer = Answer::of_best(outcome);

@@ -11,6 +11,7 @@ mod assembly_laws;
 #[cfg(test)]
 mod assembly_tests;
 mod baseline;
+mod carried;
 mod compose;
 mod course;
 mod decides;
@@ -19,6 +20,7 @@ mod domain;
 mod engines;
 mod goal;
 mod hanging;
+mod held;
 mod herald;
 mod heuristic;
 mod in_the_way;

@@ -58,6 +58,8 @@ pub struct Options {
     pub max_bytes: Option<usize>,
     /// Measures the memory in use in bytes, for a caller that has a process to itself.
     pub measure_bytes: Option<fn() -> Option<usize>>,
+    /// Says what time it is to a measurement of what the oracle takes, for lattice robots: the processor's, or the wall's.
+    pub clock: Option<fn() -> Duration>,
     /// Set it from any thread to stop.
     pub cancel: Option<Arc<AtomicBool>>,
     /// Where no plan is found, say [what is in the way](super::InTheWay): a search of its own, for about as long again.

@@ -5,15 +5,19 @@
 
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Duration;
 
 use crate::robot::{Cell, Configuration, Face, Occupancy, Placement};
+use crate::spatial::Vec3;
 use crate::statics::{
-    Assessment, Bracket, InvalidStructure, Memory, NotNear, Question, Tally, assess, assess_keeping, assess_near,
+    Anchor, Assessment, Bracket, InvalidStructure, Load, Memory, NotNear, Question, Tally, assess, assess_keeping,
+    assess_near,
 };
 
 use super::assembly::{Assembler, Assembly, Engagement, Transient};
 use super::course::{Course, engagement};
 use super::decision::{self, Wanted};
+use super::hanging::Rest;
 use super::layout::Bond;
 use super::moves::Move;
 use super::sampling;
@@ -35,9 +39,13 @@ pub type Worst = worst::Worst<Seam>;
 
 /// The oracle for the states of one robot.
 pub struct Oracle<'a> {
+    configuration: &'a Configuration,
     assembler: Assembler<'a>,
     pitch: f64,
     solves: AtomicU64,
+    /// Says what time it is.
+    pub(super) clock: Option<fn() -> Duration>,
+    taken: Mutex<Duration>,
     tally: Mutex<Tally>,
     fault: Mutex<Option<Vec<InvalidStructure>>>,
 }
@@ -46,9 +54,12 @@ impl<'a> Oracle<'a> {
     /// For the modules of `configuration`, in its environment and under its loads.
     pub fn new(configuration: &'a Configuration) -> Self {
         Self {
+            configuration,
             assembler: Assembler::new(configuration),
             pitch: configuration.pitch(),
             solves: AtomicU64::new(0),
+            clock: None,
+            taken: Mutex::new(Duration::ZERO),
             tally: Mutex::new(Tally::default()),
             fault: Mutex::new(None),
         }
@@ -57,6 +68,26 @@ impl<'a> Oracle<'a> {
     /// Structures assessed so far.
     pub fn solves(&self) -> u64 {
         self.solves.load(Ordering::Relaxed)
+    }
+
+    /// Time that this took, by the clock that was given.
+    pub fn taken(&self) -> Duration {
+        *self.taken.lock().expect("no thread panics while it adds")
+    }
+
+    /// Books structures that were assessed elsewhere.
+    pub fn add(&self, elsewhere: &Tally) {
+        self.solves.fetch_add(elsewhere.total(), Ordering::Relaxed);
+        self.tally.lock().expect("no thread panics while it counts").merge(elsewhere);
+    }
+
+    /// Books the time of some work. What the time is influences nothing.
+    pub fn timed<T>(&self, work: impl FnOnce() -> T) -> T {
+        let Some(clock) = self.clock else { return work() };
+        let began = clock();
+        let done = work();
+        *self.taken.lock().expect("no thread panics while it adds") += clock().saturating_sub(began);
+        done
     }
 
     /// What it took to assess them.
@@ -75,7 +106,7 @@ impl<'a> Oracle<'a> {
         let occupancy = Occupancy::of_placements(placements);
         let engaged: Vec<_> = bonds.iter().filter_map(|&bond| engagement(&occupancy, bond)).collect();
         self.solves.fetch_add(1, Ordering::Relaxed);
-        self.ask(&Transient { placements, moving: None, engaged: &engaged }, Instant::Rest)
+        self.timed(|| self.ask(&Transient { placements, moving: None, engaged: &engaged }, Instant::Rest))
     }
 
     /// Margin of the transient states of a move. `bonds` are the connections before it.
@@ -85,7 +116,7 @@ impl<'a> Oracle<'a> {
     pub fn of_move(&self, before: Vec<Placement>, bonds: &[Bond], step: Move, floor: f64) -> Worst {
         let course = Course::new(before, bonds, step, self.pitch).expect("a legal move has a module and a support");
         let ask = |phase: f64| self.ask(&course.at(phase), Instant::Phase(phase));
-        worst::of_course(sampling::of(step), &ask, floor, &self.solves).unwrap_or_else(Worst::cut_short)
+        self.timed(|| worst::of_course(sampling::of(step), &ask, floor, &self.solves)).unwrap_or_else(Worst::cut_short)
     }
 
     /// Upper bound on the margin of a move: with all modules but the moving one held
@@ -98,15 +129,38 @@ impl<'a> Oracle<'a> {
         let course = Course::new(before, &[], step, self.pitch).expect("a legal move has a module and a support");
         let margins = sampling::coarse(step).map(|phase| {
             let state = course.at(phase);
-            let mut assembly = self.assembler.assemble(&state);
-            let moving = state.moving.map(|moving| moving.module);
-            for (module, body) in assembly.structure.bodies.iter_mut().enumerate() {
-                body.fixed |= Some(module) != moving;
-            }
             self.solves.fetch_add(1, Ordering::Relaxed);
-            self.read(&assembly, &state, Instant::Phase(phase)).margin.upper
+            self.read(&self.assembler.assemble_alone(&state), &state, Instant::Phase(phase)).margin.upper
         });
-        margins.fold(f64::INFINITY, f64::min)
+        self.timed(|| margins.fold(f64::INFINITY, f64::min))
+    }
+
+    /// Margin of the transient states of a move with all modules but the moving one held immovably. `on_sample` is given each
+    /// phase with what the module does to the others then, in the field that proves its margin. `None` where the module falls.
+    pub fn own_course(
+        &self,
+        course: &Course,
+        step: Move,
+        on_sample: &(impl Fn(f64, Vec<Load>) + Sync),
+    ) -> Option<Worst> {
+        let ask = |phase: f64| {
+            let (state, instant) = (course.at(phase), Instant::Phase(phase));
+            let assembly = self.assembler.assemble_alone(&state);
+            match assess(&assembly.structure, Question::VALUE) {
+                Ok(assessment) => {
+                    on_sample(phase, on_others(&assembly, &assessment, &state));
+                    self.worst(&assessment, &assembly, &state, instant)
+                }
+                Err(problems) => self.unknown(problems, instant),
+            }
+        };
+        let worst = worst::of_course(sampling::of(step), &ask, f64::NEG_INFINITY, &self.solves).ok()?;
+        worst.margin.lower.is_finite().then_some(worst)
+    }
+
+    /// All modules of a state but one: see [`Rest::new`].
+    pub fn rest(&self, of: (usize, &[Placement], &[Engagement]), memory: Option<Memory>) -> Rest {
+        Rest::new(self.configuration, &self.assembler, of, memory)
     }
 
     /// Whether the margin at rest is at least `floor`, with these placements and connections, and what neighbouring states
@@ -121,13 +175,24 @@ impl<'a> Oracle<'a> {
         let occupancy = Occupancy::of_placements(placements);
         let engaged: Vec<_> = bonds.iter().filter_map(|&bond| engagement(&occupancy, bond)).collect();
         let state = Transient { placements, moving: None, engaged: &engaged };
-        self.ask_near(&state, Instant::Rest, Wanted::AtLeast(floor), near)
+        self.timed(|| self.ask_near(&state, Instant::Rest, Wanted::AtLeast(floor), near))
     }
 
     /// Whether the margin of the transient states of a move is at least `floor`: like
     /// [`of_move`](Self::of_move), of the same states, but known no better than that takes. `near` is the memory of a
     /// state at rest with the same placements.
     pub fn decides_move(
+        &self,
+        before: Vec<Placement>,
+        bonds: &[Bond],
+        step: Move,
+        floor: f64,
+        near: Option<&Memory>,
+    ) -> Worst {
+        self.timed(|| self.decides_course(before, bonds, step, floor, near))
+    }
+
+    fn decides_course(
         &self,
         before: Vec<Placement>,
         bonds: &[Bond],
@@ -208,6 +273,36 @@ impl<'a> Oracle<'a> {
         fault.get_or_insert(problems);
         Worst { margin: Bracket::new(f64::NEG_INFINITY, f64::INFINITY), instant, weakest: None }
     }
+}
+
+/// What the moving module of a state does to the others, in the field that an assessment shows.
+fn on_others(assembly: &Assembly, assessment: &Assessment, state: &Transient) -> Vec<Load> {
+    let structure = &assembly.structure;
+    let moving = state.moving.map(|moving| Anchor::Body(moving.module));
+    let mut loads = Vec::new();
+    let mut act = |on: Anchor, force: Vec3, torque: Vec3, at: Vec3| {
+        if let Anchor::Body(body) = on {
+            loads.push(Load { body, force, torque, at: Some(at) });
+        }
+    };
+    for (connection, held) in structure.connections.iter().zip(&assessment.connections) {
+        let turn = connection.frame.rotation;
+        let (force, torque) = (turn * held.wrench.force, turn * held.wrench.torque);
+        let at = connection.frame.translation.vector;
+        if Some(connection.child) == moving {
+            act(connection.parent, -force, -torque, at);
+        } else if Some(connection.parent) == moving {
+            act(connection.child, force, torque, at);
+        }
+    }
+    for (contact, &force) in structure.contacts.iter().zip(&assessment.contacts) {
+        if Some(Anchor::Body(contact.body)) == moving {
+            act(contact.against, -force, Vec3::zeros(), contact.position);
+        } else if Some(contact.against) == moving {
+            act(Anchor::Body(contact.body), force, Vec3::zeros(), contact.position);
+        }
+    }
+    loads
 }
 
 fn seam(engagement: &Engagement, placements: &[Placement]) -> Seam {

@@ -133,6 +133,9 @@ pub struct Statistics {
     pub oracle_solves: u64,
     /// What it took to assess them, of lattice robots; not part of a plan file.
     pub decided_by: Tally,
+    /// Time that assembling and assessing them took in s, by [`Options::clock`](super::Options::clock); 0 without one, and
+    /// not part of a plan file.
+    pub oracle_seconds: f64,
     /// Peak memory of the search, in approximate bytes.
     pub bytes: u64,
     /// Wall-clock time in s.

@@ -10,10 +10,13 @@
 //!
 //! The goal's own connections are reached by a last transition without cost.
 
+use std::sync::{Mutex, MutexGuard};
+
 use planners::{Reversible, Space, Transition, Width};
 
 use crate::robot::Motion;
 
+use super::carried::Carried;
 use super::domain::{Domain, width};
 use super::goal::Arrival;
 use super::heuristic::Targets;
@@ -58,6 +61,7 @@ pub struct Saturated<'a> {
     at_most: f64,
     /// The start as a goal, for what has been spent.
     from_start: Targets,
+    carried: Mutex<Carried<'a>>,
 }
 
 /// The connections of a saturated layout that a move keeps until it begins, ascending.
@@ -90,7 +94,11 @@ impl<'a> Saturated<'a> {
     /// wider than `at_most`.
     pub fn new(domain: &'a Domain<'a>, start: Width, at_most: f64) -> Self {
         let from_start = domain.problem.targets(domain.problem.start_layout());
-        Self { domain, start, at_most, from_start }
+        Self { domain, start, at_most, from_start, carried: Mutex::new(Carried::new(domain)) }
+    }
+
+    fn carried(&self) -> MutexGuard<'_, Carried<'a>> {
+        self.carried.lock().expect("no thread panics while it asks what is carried")
     }
 
     /// The moves out of a layout, in a fixed order.
@@ -166,6 +174,9 @@ impl Space for Saturated<'_> {
         if !self.domain.stability || floor == f64::NEG_INFINITY {
             return None;
         }
+        if let Some(margin) = self.carried().margin(&from.layout, step, floor) {
+            return Some(Width { lower: margin, upper: f64::INFINITY }.in_series(self.start));
+        }
         let worst = self.domain.decides(&from.layout, &kept(&from.layout, step), step, &to.layout, floor);
         // What is left open there is asked for itself.
         let is_decided = worst.margin.lower >= floor || worst.is_out(floor);
@@ -185,7 +196,7 @@ impl Space for Saturated<'_> {
     }
 
     fn memory_bytes(&self) -> usize {
-        self.domain.memory_bytes()
+        self.domain.memory_bytes() + self.carried().bytes()
     }
 }
 

@@ -53,7 +53,8 @@ pub fn solve(
         Err(Rejection::Refused(refusal)) => return Err(refusal),
         Err(Rejection::Impossible(reason)) => return Ok(Report::impossible(options.objective, required, reason)),
     };
-    let domain = Domain::new(&problem, !options.ignore_stability);
+    let domain = Domain::new(&problem, !options.ignore_stability).timed_by(options.clock);
+    let domain = if options.baseline == Some(Baseline::Eager) { domain.forgetting() } else { domain };
     let ends = Ends::new(&domain);
     if let Some(fault) = domain.oracle.fault() {
         return Err(Refusal::Structure(fault));
@@ -130,6 +131,7 @@ fn finished(mut report: Report, domain: &Domain, began: Instant) -> Result<Repor
     }
     report.statistics.oracle_solves += domain.oracle.solves();
     report.statistics.decided_by = domain.oracle.tally();
+    report.statistics.oracle_seconds = domain.oracle.taken().as_secs_f64();
     report.statistics.seconds = began.elapsed().as_secs_f64();
     Ok(report)
 }

@@ -17,6 +17,16 @@ pub enum Instant {
     Rest,
 }
 
+impl Instant {
+    /// Phase of the move that it is of; at rest, the end.
+    pub const fn phase(self) -> f64 {
+        match self {
+            Self::Phase(phase) => phase,
+            Self::Rest => 1.0,
+        }
+    }
+}
+
 /// The worst of some states; `C` names a connection.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Worst<C> {

@@ -113,6 +113,7 @@ pub(super) fn statistics(wire: &wire::Statistics, place: &Place<'_>, findings: &
         certified,
         oracle_solves: wire.oracle_solves,
         decided_by: Tally::default(),
+        oracle_seconds: 0.0,
         bytes: wire.memory_bytes.unwrap_or_default(),
         seconds: wire.seconds.0,
     };

@@ -1,15 +1,15 @@
 //! What the modules that stay where they are carry.
 
 use std::collections::HashMap;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex};
 
 use rayon::prelude::*;
 
 use crate::reconfigure::assembly::{Assembler, Engagement, Transient};
 use crate::robot::{Configuration, Placement};
 use crate::spatial::Vec3;
-use crate::statics::{Anchor, Assessment, Load, Memory, Question, Structure, assess_keeping, assess_near};
+use crate::statics::{Anchor, Assessment, Load, Memory, Question, Structure, Tally, assess_keeping, assess_near};
 
 /// Steps to the edge of a cell that places of a weight are told apart by, so that walks have many in common.
 const GRID: f64 = 4.0;
@@ -86,17 +86,29 @@ pub struct Rests<'a> {
     assembler: Assembler<'a>,
     memory: Option<Memory>,
     solves: Arc<AtomicU64>,
+    tally: Mutex<Tally>,
 }
 
 impl<'a> Rests<'a> {
     /// Of the modules of `configuration`, in its environment and under its loads.
     pub fn new(configuration: &'a Configuration) -> Self {
-        Self { configuration, assembler: Assembler::new(configuration), memory: None, solves: Arc::default() }
+        Self {
+            configuration,
+            assembler: Assembler::new(configuration),
+            memory: None,
+            solves: Arc::default(),
+            tally: Mutex::default(),
+        }
     }
 
     /// Structures assessed so far.
     pub fn solves(&self) -> u64 {
         self.solves.load(Ordering::Relaxed)
+    }
+
+    /// What it took to assess those since this was last asked.
+    pub fn take_tally(&mut self) -> Tally {
+        std::mem::take(self.tally.get_mut().expect("no thread panics while it counts"))
     }
 
     /// Where they are counted, also while someone asks.
@@ -106,18 +118,7 @@ impl<'a> Rests<'a> {
 
     /// All modules but `module`, held together by `engaged`, of which those of `module` play no part.
     pub fn without(&self, module: usize, placements: &[Placement], engaged: &[Engagement]) -> Rest {
-        let others: Vec<Engagement> =
-            engaged.iter().copied().filter(|engagement| !engagement.modules().contains(&module)).collect();
-        let state = Transient { placements, moving: None, engaged: &others };
-        let mut structure = self.assembler.assemble(&state).structure;
-        // Nothing touches it, so that it needs no balance.
-        let gone = Anchor::Body(module);
-        structure.contacts.retain(|contact| contact.body != module && contact.against != gone);
-        structure.loads.retain(|load| load.body != module);
-        structure.bodies[module].fixed = true;
-        let weight = self.configuration.module_type(module).body().mass * self.configuration.gravity;
-        let is_plain = self.configuration.loads.iter().all(|load| load.module != module);
-        Rest { structure, weight, is_plain, memory: self.memory.clone(), is_settled: false, known: HashMap::new() }
+        Rest::new(self.configuration, &self.assembler, (module, placements, engaged), self.memory.clone())
     }
 
     /// Proved upper bound on the utilisation of `rest` with the module's weight on `support`, wherever in `reach` it
@@ -138,38 +139,86 @@ impl<'a> Rests<'a> {
         let mut open: Vec<[i32; 3]> = corners.iter().copied().filter(is_open).collect();
         if !rest.is_settled && !open.is_empty() {
             let corner = open.remove(0);
-            let (found, memory) = self.ask(rest, support, &corner, level);
-            rest.is_settled = rest.memory.is_some();
+            let asked = self.ask(rest, support, &corner, level);
+            let found = asked.as_ref().map_or(f64::INFINITY, |(found, _)| *found);
             rest.known.insert(key(&corner), (found, level));
-            if let Some(memory) = memory {
+            if let Some((_, memory)) = asked {
                 self.memory = Some(memory.clone());
                 rest.memory = Some(memory);
+                rest.is_settled = true;
             }
             if !(found <= level) {
                 return f64::INFINITY;
             }
         }
-        let asked: Vec<(f64, f64)> =
-            open.par_iter().map(|corner| (self.ask(rest, support, corner, level).0, level)).collect();
+        let asked: Vec<(f64, f64)> = open
+            .par_iter()
+            .map(|corner| (self.ask(rest, support, corner, level).map_or(f64::INFINITY, |(found, _)| found), level))
+            .collect();
         rest.known.extend(open.iter().map(key).zip(asked));
         let most = corners.iter().map(|corner| rest.known[&key(corner)].0).fold(0.0, f64::max);
         if most <= level { most } else { f64::INFINITY }
     }
 
-    fn ask(&self, rest: &Rest, support: usize, corner: &[i32; 3], level: f64) -> (f64, Option<Memory>) {
-        self.solves.fetch_add(1, Ordering::Relaxed);
-        let mut structure = rest.structure.clone();
+    fn ask(&self, rest: &Rest, support: usize, corner: &[i32; 3], level: f64) -> Option<(f64, Memory)> {
         let off_centre = Vec3::from(corner.map(f64::from)) * (self.configuration.pitch() / GRID);
-        let at = Some(structure.bodies[support].com + off_centre);
+        let at = Some(rest.structure.bodies[support].com + off_centre);
         let load = Load { body: support, force: rest.weight, torque: Vec3::zeros(), at };
-        structure.loads.push(load);
+        self.solves.fetch_add(1, Ordering::Relaxed);
+        let (found, memory) = rest.ask(&[load], level)?;
+        self.tally.lock().expect("no thread panics while it counts").count(&found);
+        Some((found.utilisation.upper, memory))
+    }
+}
+
+impl Rest {
+    /// All modules of a robot but one, held together by engagements of which those of this one play no part. `memory` is what
+    /// a state of the robot before left.
+    pub fn new(
+        configuration: &Configuration,
+        assembler: &Assembler,
+        (module, placements, engaged): (usize, &[Placement], &[Engagement]),
+        memory: Option<Memory>,
+    ) -> Self {
+        let others: Vec<Engagement> =
+            engaged.iter().copied().filter(|engagement| !engagement.modules().contains(&module)).collect();
+        let state = Transient { placements, moving: None, engaged: &others };
+        let mut structure = assembler.assemble(&state).structure;
+        // Nothing touches it, so that it needs no balance.
+        let gone = Anchor::Body(module);
+        structure.contacts.retain(|contact| contact.body != module && contact.against != gone);
+        structure.loads.retain(|load| load.body != module);
+        structure.bodies[module].fixed = true;
+        let weight = configuration.module_type(module).body().mass * configuration.gravity;
+        let is_plain = configuration.loads.iter().all(|load| load.module != module);
+        Self { structure, weight, is_plain, memory, is_settled: false, known: HashMap::new() }
+    }
+
+    /// Proved upper bound on the utilisation under further loads, with none of the module's weight. Asks no more than
+    /// whether that is at most `level`; infinite where that was not proved. What was asked is counted.
+    pub fn under(&mut self, loads: &[Load], level: f64, tally: &mut Tally) -> f64 {
+        // Unsound structures are found by whoever asks about the whole robot.
+        let Some((found, memory)) = self.ask(loads, level) else { return f64::INFINITY };
+        tally.count(&found);
+        if !self.is_settled {
+            (self.memory, self.is_settled) = (Some(memory), true);
+        }
+        if found.utilisation.upper <= level { found.utilisation.upper } else { f64::INFINITY }
+    }
+
+    /// What the next state can use, once something was asked.
+    pub fn memory(&self) -> Option<&Memory> {
+        self.memory.as_ref()
+    }
+
+    fn ask(&self, loads: &[Load], level: f64) -> Option<(Assessment, Memory)> {
+        let mut structure = self.structure.clone();
+        structure.loads.extend_from_slice(loads);
         let question = Question::Decide(level);
         let same: Vec<Option<usize>> = (0..structure.bodies.len()).map(Some).collect();
-        let answer: Option<(Assessment, Memory)> = match &rest.memory {
+        match &self.memory {
             Some(memory) => assess_near(&structure, question, memory, &same).ok(),
             None => assess_keeping(&structure, question).ok(),
-        };
-        // Unsound structures are found by whoever asks about the whole robot.
-        answer.map_or((f64::INFINITY, None), |(found, memory)| (found.utilisation.upper, Some(memory)))
+        }
     }
 }

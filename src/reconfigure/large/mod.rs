@@ -35,7 +35,7 @@ use levels::Levels;
 pub use script::Ends;
 use script::write;
 use shape::Targets;
-use ways::Ways;
+pub use ways::{Ways, shift};
 
 /// Most modules for which all is searched unless asked otherwise.
 pub const EXACT_MODULES: usize = 12;

@@ -4,10 +4,13 @@ use planners::{Reversible, Search, Space};
 use proptest::prelude::*;
 
 use crate::reconfigure::baseline::Baseline;
+use crate::reconfigure::carried::Carried;
 use crate::reconfigure::domain::Domain;
+use crate::reconfigure::held::Held;
+use crate::reconfigure::moves::Move;
 use crate::reconfigure::plan::{Objective, Outcome};
 use crate::reconfigure::problem::Problem;
-use crate::reconfigure::saturated::{Action, Saturated};
+use crate::reconfigure::saturated::{Action, Saturated, kept};
 use crate::reconfigure::{MARGIN_TOLERANCE, Options};
 use crate::robot::Cell;
 
@@ -72,6 +75,65 @@ proptest! {
     }
 }
 
+/// Every move out of a robot's state with the margin of all its samples, by solves from nothing.
+fn measured(domain: &Domain, ask: &mut dyn FnMut(Move, crate::statics::Bracket)) {
+    let layout = domain.problem.start_layout();
+    let space = Saturated::new(domain, planners::Width::UNLIMITED, f64::INFINITY);
+    for transition in space.transitions(&space.start()) {
+        let Action::Move(step) = transition.action else { continue };
+        let placements = domain.problem.placements(layout);
+        ask(step, domain.oracle.of_move(placements, &kept(layout, step), step, f64::NEG_INFINITY).margin);
+    }
+}
+
+/// Two layers of cubes with one on top: its moves are as strong as its hold, and the others carry it.
+const SLAB: [Cell; 9] =
+    [[0, 0, 0], [1, 0, 0], [2, 0, 0], [0, 1, 0], [1, 1, 0], [2, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1]];
+
+/// What the others carry is proved for whole moves: of most of those that hold, and never more than their margin.
+#[test]
+fn what_is_carried_holds() {
+    let state = cubes(&SLAB, 0);
+    let problem = Problem::new(&state, &goal(state.clone())).unwrap();
+    let domain = Domain::new(&problem, true);
+    let mut carried = Carried::new(&domain);
+    let (mut hold, mut proved) = (0, 0);
+    measured(&domain, &mut |step, margin| {
+        let layout = problem.start_layout();
+        let found = carried.margin(layout, step, 0.0);
+        assert!(
+            found.is_none_or(|found| 0.0 <= found && found <= margin.upper + MARGIN_TOLERANCE),
+            "{found:?}, {margin:?}"
+        );
+        assert_eq!(carried.margin(layout, step, margin.upper + 1e-3), None, "{step:?}");
+        hold += usize::from(margin.lower >= 0.0);
+        proved += usize::from(found.is_some());
+    });
+    assert!(2 * proved > hold && hold > 5, "{proved} of {hold}");
+}
+
+/// Where a module's own hold is what limits a move, that is the margin of the move.
+#[test]
+fn a_hold_that_limits_is_the_margin() {
+    for fixed in [0, 1] {
+        let state = cubes(&SLAB, fixed);
+        let problem = Problem::new(&state, &goal(state.clone())).unwrap();
+        let domain = Domain::new(&problem, true);
+        let mut held = Held::default();
+        let mut found = 0;
+        measured(&domain, &mut |step, margin| {
+            let layout = problem.start_layout();
+            let is_along = domain.is_beside_environment(step);
+            let own = held.margin((&problem, &domain.oracle), layout, &kept(layout, step), step, is_along);
+            let Some(own) = own.map(|own| own.margin) else { return };
+            found += 1;
+            assert!((own.lower - margin.lower).abs() <= MARGIN_TOLERANCE, "{own:?}, {margin:?} of {step:?}");
+            assert!((own.upper - margin.upper).abs() <= MARGIN_TOLERANCE, "{own:?}, {margin:?} of {step:?}");
+        });
+        assert!(found > 5, "{found}");
+    }
+}
+
 /// Starts and goals of cubes on the ground, the first one held.
 const PROBLEMS: &[(&[Cell], &[Cell])] = &[
     (&[[0, 0, 0], [0, 0, 1], [0, 0, 2], [1, 0, 0]], &[[0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 0, 0]]),
@@ -101,6 +163,10 @@ fn baselines_find_the_same() {
     ] {
         let (best, other) = (of(index, objective, None), of(index, objective, Some(baseline)));
         assert_eq!(best.outcome, Outcome::Solved);
+        if baseline == Baseline::Eager {
+            let solves = [&best, &other].map(|report| report.statistics.oracle_solves);
+            assert!(2 * solves[0] < solves[1], "{solves:?}");
+        }
         let (Outcome::Solved, Some(best), Some(other)) = (&other.outcome, &best.plan, &other.plan) else { continue };
         assert_eq!(other.moves, best.moves, "problem {index} by {baseline:?}");
         if objective == Objective::Margin {

@@ -1,7 +1,8 @@
 //! What a report says: further plans, limits, progress, and the same for any number of threads.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::time::Duration;
 
 use crate::reconfigure::moves::Move;
 use crate::reconfigure::plan::{Limit, Objective, Outcome, Plan};
@@ -133,4 +134,18 @@ fn a_trace_forgets_the_order_of_independent_moves_only() {
     assert_eq!(trace(&[near, far]), trace(&[far, near]));
     assert_eq!(trace(&[near, next, far]), trace(&[far, near, next]));
     assert_ne!(trace(&[near, next]), trace(&[next, near]));
+}
+
+/// A clock that ticks when it is looked at: what the time is changes nothing but what was measured.
+#[test]
+fn the_oracle_is_timed_by_the_clock_that_is_given() {
+    static LOOKS: AtomicU64 = AtomicU64::new(0);
+    let clock: fn() -> Duration = || Duration::from_secs(LOOKS.fetch_add(1, Ordering::Relaxed));
+    let (start, goal) = tower_to_row();
+    let options = Options { objective: Objective::Moves, ..Options::default() };
+    let untimed = plan(&start, &goal, &options);
+    let timed = plan(&start, &goal, &Options { clock: Some(clock), ..options });
+    assert_eq!(untimed.statistics.oracle_seconds, 0.0);
+    assert_eq!(2.0 * timed.statistics.oracle_seconds, LOOKS.load(Ordering::Relaxed) as f64);
+    assert_eq!(timed.plan, untimed.plan);
 }
