@@ -11,7 +11,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use steadfast::io::{SourceFile, no_references, read_problem};
-use steadfast::reconfigure::partial_order::{OrderOptions, partial_order};
+use steadfast::reconfigure::partial_order::OrderOptions;
 use steadfast::reconfigure::{News, Objective, Options, Outcome};
 use steadfast::schedule::{Job, Problem, Robot, best, plan_batch, until, weaken_connector, without};
 
@@ -27,7 +27,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     // A first plan, and which of its actions may run at the same time.
     let report = problem.plan(&options, &mut |_| {})?;
     let plan = report.plan.ok_or("no plan")?;
-    let order = partial_order(&problem.start, &plan, &OrderOptions::default())?;
+    let order = problem.partial_order(&plan, &OrderOptions::default())?;
     let times = order.timetable(|action| if plan.actions[action].action.is_move() { 10.0 } else { 1.0 });
     writeln!(out, "{} moves, {:.0} s instead of {:.0} s", plan.moves, times.makespan, times.one_by_one)?;
 

@@ -541,6 +541,31 @@ fn what_may_run_at_the_same_time_is_told_drawn_and_written() {
 }
 
 #[test]
+fn what_may_run_at_the_same_time_is_told_of_linkages_too() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = |name: &str| directory.path().join(name).display().to_string();
+    for problem in ["rofi/fold_then_swing", "rofi/tower_of_four_nods", "freesn/two_ways", "freesn/climber"] {
+        let [start, goal] = ["start", "goal"].map(|which| format!("{problem}/{which}.json"));
+        let found = plan(&[&start, &goal, "--objective", "moves", "--out", &path("plan.json")]);
+        assert_eq!(found.status.code(), Some(0), "{problem}");
+        let told = plan(&["parallel", &path("plan.json"), "--svg", &path("times.svg"), "--dot", &path("order.dot")]);
+        assert_eq!(told.status.code(), Some(0), "{problem}");
+        assert!(std::fs::read_to_string(path("order.dot")).unwrap().contains("roll") == problem.contains("freesn"));
+        let written = plan(&["parallel", &path("plan.json"), "--move-time", "10", "--latch-time", "1", "--json"]);
+        let value: serde_json::Value = serde_json::from_str(&stdout(&written)).unwrap();
+        assert_eq!((&value["format"], &value["complete"]), (&"partial-order/1".into(), &true.into()));
+        let actions = value["actions"].as_array().unwrap();
+        let ends: Vec<f64> = actions.iter().map(|action| action["ends"].as_f64().unwrap()).collect();
+        for action in actions {
+            let waits = action["waits_for"].as_array().unwrap();
+            let ready = waits.iter().map(|wait| ends[wait["action"].as_u64().unwrap() as usize]).fold(0.0, f64::max);
+            assert_eq!(action["begins"].as_f64(), Some(ready), "{problem}");
+        }
+        assert_eq!(value["makespan"].as_f64(), ends.iter().copied().reduce(f64::max), "{problem}");
+    }
+}
+
+#[test]
 fn what_is_forbidden_is_kept_in_the_plan_file() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("plan.json").display().to_string();

@@ -101,7 +101,8 @@ pub fn penetration(a: &Solid, b: &Solid) -> f64 {
 }
 
 /// Whether two solids penetrate deeper than `skin` in m. Touching is not
-/// overlapping. A non-finite pose overlaps.
+/// overlapping. A negative skin asks whether they come closer than that much: `false` is sure,
+/// `true` also where no direction of the two says so. A non-finite pose overlaps.
 pub fn overlap(a: &Solid, b: &Solid, skin: f64) -> bool {
     match (a.cuboid(), b.cuboid()) {
         (Some(half_a), Some(half_b)) => !of_cuboids(a, half_a, b, half_b).any(|s| s.gap >= -skin),

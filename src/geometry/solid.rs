@@ -1,5 +1,7 @@
 //! Convex solids at a pose.
 
+use std::sync::Arc;
+
 use crate::robot::Shape;
 use crate::spatial::{Point, Pose, Vec3};
 
@@ -98,6 +100,19 @@ impl Solid {
         }
     }
 
+    /// A solid that holds every point within `by` in m, at least 0, of this one.
+    #[must_use]
+    pub fn grown(&self, by: f64) -> Self {
+        let shape = match &self.shape {
+            Shape::Cuboid { half_extents } => Shape::Cuboid { half_extents: half_extents.add_scalar(by) },
+            Shape::Cylinder { radius, height } => Shape::Cylinder { radius: radius + by, height: height + 2.0 * by },
+            Shape::Ball { radius } => Shape::Ball { radius: radius + by },
+            // Every face moves outwards by at least that, as none is nearer to the centre than the nearest.
+            Shape::Convex(hull) => Shape::Convex(Arc::new(hull.scaled(1.0 + by / hull.inner_radius()))),
+        };
+        Self { shape, pose: self.pose }
+    }
+
     /// The same solid with every face moved inwards by `skin` in m, those of a hull at
     /// least by that; a solid thinner than twice that becomes flat.
     #[must_use]
@@ -111,7 +126,7 @@ impl Solid {
             Shape::Ball { radius } => Shape::Ball { radius: less(*radius) },
             Shape::Convex(hull) => {
                 let share = less(hull.inner_radius()) / hull.inner_radius();
-                Shape::Convex(std::sync::Arc::new(hull.scaled(share)))
+                Shape::Convex(Arc::new(hull.scaled(share)))
             }
         };
         Self { shape, pose: self.pose }

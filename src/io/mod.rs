@@ -54,6 +54,6 @@ pub use schema::{schema, schema_names};
 pub use turn::AxisAngle;
 pub use write::{
     Unwritable, in_space_because, write_catalogue, write_certificate, write_check, write_configuration, write_goal,
-    write_linkage, write_linkage_goal, write_linkage_plan, write_load_range, write_partial_order, write_plan,
-    write_point, write_result, write_rofi, write_structure,
+    write_linkage, write_linkage_goal, write_linkage_partial_order, write_linkage_plan, write_load_range,
+    write_partial_order, write_plan, write_point, write_result, write_rofi, write_structure,
 };

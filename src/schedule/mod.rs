@@ -11,8 +11,9 @@
 //!   ([`until`]);
 //! - [`plan_batch`] plans many problems at once.
 //!
-//! Which actions of a plan may run at the same time, [`partial_order`](mod@crate::reconfigure::partial_order) says.
-//! Errors are types, and nothing is printed.
+//! Which actions of a plan may run at the same time, [`Problem::partial_order`] says, for lattices and linkages alike:
+//! a graph of what waits for what, and when everything ends if each action begins as early as it may. Errors are types,
+//! and nothing is printed.
 //!
 //! ```
 //! use steadfast::reconfigure::{Objective, Options};
@@ -47,6 +48,7 @@ mod robot;
 use std::time::Instant;
 
 use crate::reconfigure::linkage::{self, replay as linkage_replay};
+use crate::reconfigure::partial_order::{OrderError, OrderOptions, PartialOrder};
 use crate::reconfigure::replay::{Replay, replay};
 use crate::reconfigure::{Event, Options, Plan, Refusal, Report, solve};
 use crate::robot::linkage::Linkage;
@@ -76,6 +78,12 @@ pub type EventOf<R> = Event<<R as Robot>::Action, <R as Robot>::Connection>;
 
 /// A plan of a robot.
 pub type PlanOf<R> = Plan<<R as Robot>::Action, <R as Robot>::Connection>;
+
+/// The partial order of a plan of a robot.
+pub type OrderOf<R> = PartialOrder<<R as Robot>::Touched>;
+
+/// Why a plan of a robot has no partial order.
+pub type BrokenOf<R> = OrderError<<R as Robot>::Touched>;
 
 impl Problem<Configuration> {
     /// Of lattice modules.
@@ -114,6 +122,16 @@ impl<R: Robot> Problem<R> {
     /// [`Refusal`] for bad input.
     pub fn replay(&self, plan: &PlanOf<R>, required: f64) -> Result<Replay<R::Connection, R::Touched>, Refusal> {
         R::replay(self, plan, required)
+    }
+
+    /// Which actions of a plan from the start may run at the same time, and which have to wait for which: every order
+    /// and every overlap that it allows is legal, free of collision and stable. See
+    /// [`partial_order`](mod@crate::reconfigure::partial_order).
+    ///
+    /// # Errors
+    /// [`OrderError`](crate::reconfigure::partial_order::OrderError) for a plan that does not hold in its own order.
+    pub fn partial_order(&self, plan: &PlanOf<R>, options: &OrderOptions) -> Result<OrderOf<R>, BrokenOf<R>> {
+        self.start.partial_order(plan, options)
     }
 }
 

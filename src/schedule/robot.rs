@@ -4,7 +4,8 @@ use std::fmt::{self, Debug, Display};
 use std::sync::Arc;
 
 use crate::reconfigure::linkage::assembly::{Held, Touched as LinkageTouched};
-use crate::reconfigure::linkage::{Action as LinkageAction, replay as linkage_replay};
+use crate::reconfigure::linkage::{self, Action as LinkageAction, replay as linkage_replay};
+use crate::reconfigure::partial_order::{self, OrderError, OrderOptions, PartialOrder};
 use crate::reconfigure::replay::{self, Fault, Replay};
 use crate::reconfigure::{Action, Event, Options, Plan, Refusal, Report, assembly};
 use crate::robot::linkage::{Linkage, MEETING};
@@ -89,6 +90,16 @@ pub trait Robot: Clone + Debug + PartialEq + Send + Sync + 'static {
         plan: &PlanOf<Self>,
         required: f64,
     ) -> Result<Replay<Self::Connection, Self::Touched>, Refusal>;
+
+    /// Which actions of a plan may run at the same time: [`Problem::partial_order`].
+    ///
+    /// # Errors
+    /// [`OrderError::Broken`] for a plan that does not hold from here in its own order.
+    fn partial_order(
+        &self,
+        plan: &PlanOf<Self>,
+        options: &OrderOptions,
+    ) -> Result<PartialOrder<Self::Touched>, OrderError<Self::Touched>>;
 }
 
 /// The index of a module once another one is taken out.
@@ -157,6 +168,10 @@ impl Robot for Configuration {
 
     fn replay(problem: &Problem<Self>, plan: &Plan, required: f64) -> Result<Replay, Refusal> {
         super::replay_lattice(problem, plan, required)
+    }
+
+    fn partial_order(&self, plan: &Plan, options: &OrderOptions) -> Result<PartialOrder, OrderError> {
+        partial_order::partial_order(self, plan, options)
     }
 }
 
@@ -233,5 +248,13 @@ impl Robot for Linkage {
         required: f64,
     ) -> Result<Replay<Held, LinkageTouched>, Refusal> {
         super::replay_linkage(problem, plan, required)
+    }
+
+    fn partial_order(
+        &self,
+        plan: &PlanOf<Self>,
+        options: &OrderOptions,
+    ) -> Result<PartialOrder<LinkageTouched>, OrderError<LinkageTouched>> {
+        linkage::partial_order(self, plan, options)
     }
 }

@@ -279,9 +279,9 @@ pub struct VerifyArguments {
 
 #[derive(Debug, Args)]
 pub struct ParallelArguments {
-    /// A plan/1 file for lattice modules; `-` reads standard input
+    /// A plan/1 file; `-` reads standard input
     pub file: PathBuf,
-    /// How many modules may move at once
+    /// How many moves may be under way at once
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=8))]
     pub most: u32,
     /// Margin that every state must have [default: what the plan was made for]

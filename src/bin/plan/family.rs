@@ -2,16 +2,20 @@
 
 use std::fmt::Display;
 
-use steadfast::io::{LatticeProblem, LinkageProblem, PlanDocument, Unwritable, write_linkage_plan, write_plan};
+use steadfast::io::{
+    LatticeProblem, LinkageProblem, PartialOrderReport, PlanDocument, Unwritable, write_linkage_partial_order,
+    write_linkage_plan, write_partial_order, write_plan,
+};
 use steadfast::reconfigure::linkage::assembly::{BodyOf, Held, Touched};
 use steadfast::reconfigure::linkage::{self, Half};
+use steadfast::reconfigure::partial_order::{OrderError, OrderOptions, PartialOrder, partial_order};
 use steadfast::reconfigure::replay::{Replay, appraise, replay};
 use steadfast::reconfigure::{self, Action, Event, Options, Plan, Refusal, Report, solve};
 use steadfast::robot::linkage::{Linkage, MICRO, Port, Spot};
 use steadfast::robot::{Cell, Configuration, FaceConnection};
 
 /// A planning problem of one family of robots.
-pub trait Family: Sync {
+pub trait Family: Sized + Sync {
     /// What its modules do.
     type Action: Clone + Send;
     /// What names one of its connections.
@@ -54,8 +58,26 @@ pub trait Family: Sync {
     /// What no file can say.
     fn write(&self, report: &Answer<Self>) -> Result<String, Unwritable>;
 
+    /// Which actions of a plan may run at the same time.
+    ///
+    /// # Errors
+    /// A plan that does not hold in its own order, or what cannot be assessed.
+    fn partial_order(&self, plan: &PlanOf<Self>, options: &OrderOptions) -> Result<OrderOf<Self>, BrokenOf<Self>>;
+
+    /// A `partial-order/1` document about the best plan of a plan file.
+    ///
+    /// # Errors
+    /// What no file can say.
+    fn write_order(
+        document: &DocumentOf<Self>,
+        report: &PartialOrderReport<'_, Self::Touched>,
+    ) -> Result<String, Unwritable>;
+
     /// The margin that the start requires.
     fn required(&self) -> f64;
+
+    /// Whether an action moves modules.
+    fn is_move(action: &Self::Action) -> bool;
 
     /// What an action does, in a few words.
     fn action(&self, action: &Self::Action) -> String;
@@ -72,6 +94,18 @@ pub type Answer<F> = Report<<F as Family>::Action, <F as Family>::Connection>;
 
 /// What a replay says of a plan.
 pub type Check<F> = Replay<<F as Family>::Connection, <F as Family>::Touched>;
+
+/// A plan.
+pub type PlanOf<F> = Plan<<F as Family>::Action, <F as Family>::Connection>;
+
+/// A plan file once read.
+pub type DocumentOf<F> = PlanDocument<F, <F as Family>::Action, <F as Family>::Connection>;
+
+/// The partial order of a plan.
+pub type OrderOf<F> = PartialOrder<<F as Family>::Touched>;
+
+/// Why a plan has no partial order.
+pub type BrokenOf<F> = OrderError<<F as Family>::Touched>;
 
 /// What looks at a running search.
 pub type OnEvent<'e, F> = dyn FnMut(&Event<<F as Family>::Action, <F as Family>::Connection>) + 'e;
@@ -101,8 +135,20 @@ impl Family for LatticeProblem {
         write_plan(&PlanDocument::new(self.clone(), report))
     }
 
+    fn partial_order(&self, plan: &Plan, options: &OrderOptions) -> Result<PartialOrder, OrderError> {
+        partial_order(&self.start, plan, options)
+    }
+
+    fn write_order(document: &DocumentOf<Self>, report: &PartialOrderReport<'_>) -> Result<String, Unwritable> {
+        write_partial_order(document, report)
+    }
+
     fn required(&self) -> f64 {
         self.start.require.margin
+    }
+
+    fn is_move(action: &Action) -> bool {
+        action.is_move()
     }
 
     fn action(&self, action: &Action) -> String {
@@ -155,8 +201,23 @@ impl Family for LinkageProblem {
         write_linkage_plan(&PlanDocument::new(self.clone(), report))
     }
 
+    fn partial_order(&self, plan: &PlanOf<Self>, options: &OrderOptions) -> Result<OrderOf<Self>, BrokenOf<Self>> {
+        linkage::partial_order(&self.start, plan, options)
+    }
+
+    fn write_order(
+        document: &DocumentOf<Self>,
+        report: &PartialOrderReport<'_, Touched>,
+    ) -> Result<String, Unwritable> {
+        write_linkage_partial_order(document, report)
+    }
+
     fn required(&self) -> f64 {
         self.start.require.margin
+    }
+
+    fn is_move(action: &linkage::Action) -> bool {
+        action.is_move()
     }
 
     fn action(&self, action: &linkage::Action) -> String {

@@ -1,17 +1,16 @@
 //! `plan parallel PLAN`: which actions of a plan may run at the same time.
 
-use std::fmt::Write as _;
+use std::fmt::{Display, Write as _};
 use std::io;
 use std::time::Instant;
 
 use petgraph::visit::EdgeRef;
-use steadfast::io::{PartialOrderReport, PlanDocument, Verifiable, read_verifiable, write_partial_order};
-use steadfast::reconfigure::Plan;
-use steadfast::reconfigure::partial_order::{OrderError, OrderOptions, PartialOrder, Timetable, partial_order};
+use steadfast::io::{PartialOrderReport, Verifiable, read_verifiable};
+use steadfast::reconfigure::partial_order::{OrderError, OrderOptions, PartialOrder, Timetable};
 
 use crate::arguments::ParallelArguments;
 use crate::exit::Exit;
-use crate::family::Family;
+use crate::family::{DocumentOf, Family, OrderOf, PlanOf};
 use crate::{files, gantt, output};
 
 /// Width of the bars of the chart for people, in characters.
@@ -24,14 +23,20 @@ const BARS: usize = 32;
 pub fn run(arguments: &ParallelArguments) -> io::Result<Exit> {
     let file = files::read(&arguments.file);
     let refused = |reason: &str| output::refused(&file.name, [reason.to_string()], arguments.json);
-    let document = match read_verifiable(&file) {
-        Ok(Verifiable::Plan(document)) => document,
-        Ok(Verifiable::LinkagePlan(_)) => {
-            return refused("the partial order is known for plans of lattice modules only");
-        }
-        Ok(Verifiable::Certificate(_)) => return refused("this is a certificate, not a plan"),
-        Err(diagnostics) => return output::bad_input(&diagnostics, arguments.json),
-    };
+    match read_verifiable(&file) {
+        Ok(Verifiable::Plan(document)) => answer(&document, arguments, &refused),
+        Ok(Verifiable::LinkagePlan(document)) => answer(&document, arguments, &refused),
+        Ok(Verifiable::Certificate(_)) => refused("this is a certificate, not a plan"),
+        Err(diagnostics) => output::bad_input(&diagnostics, arguments.json),
+    }
+}
+
+/// Reports the partial order of a document's best plan.
+fn answer<P: Family>(
+    document: &DocumentOf<P>,
+    arguments: &ParallelArguments,
+    refused: &dyn Fn(&str) -> io::Result<Exit>,
+) -> io::Result<Exit> {
     let Some(plan) = &document.report.plan else { return refused("the file has no plan") };
     let required = document.report.required.unwrap_or(document.problem.required());
     let options = OrderOptions {
@@ -40,7 +45,7 @@ pub fn run(arguments: &ParallelArguments) -> io::Result<Exit> {
         deadline: arguments.time_limit.and_then(|limit| Instant::now().checked_add(limit)),
         ..OrderOptions::default()
     };
-    let order = match partial_order(&document.problem.start, plan, &options) {
+    let order = match document.problem.partial_order(plan, &options) {
         Ok(order) => order,
         Err(broken @ OrderError::Broken { .. }) => {
             output::message(&format!("NOT VERIFIED: {broken}"))?;
@@ -48,7 +53,7 @@ pub fn run(arguments: &ParallelArguments) -> io::Result<Exit> {
         }
         Err(OrderError::Refused(refusal)) => return refused(&refusal.to_string()),
     };
-    let times = order.timetable(|action| match plan.actions[action].action.is_move() {
+    let times = order.timetable(|action| match P::is_move(&plan.actions[action].action) {
         true => arguments.move_time,
         false => arguments.latch_time,
     });
@@ -61,24 +66,22 @@ pub fn run(arguments: &ParallelArguments) -> io::Result<Exit> {
         saved(path, dot(&order, label))?;
     }
     let text = match arguments.json {
-        true => match write_partial_order(
-            &document,
-            &PartialOrderReport { options: &options, order: &order, times: &times },
-        ) {
+        true => match P::write_order(document, &PartialOrderReport { options: &options, order: &order, times: &times })
+        {
             Ok(text) => text,
             Err(trouble) => {
                 output::message(&format!("bug: the order cannot be written: {trouble}"))?;
                 return Ok(Exit::Bug);
             }
         },
-        false => chart(&document, plan, &order, &times),
+        false => chart(&document.problem, plan, &order, &times),
     };
     output::result(&text)?;
     Ok(Exit::Yes)
 }
 
 /// A row for every action: what it waits for, and when it runs.
-fn chart(document: &PlanDocument, plan: &Plan, order: &PartialOrder, times: &Timetable) -> String {
+fn chart<P: Family>(problem: &P, plan: &PlanOf<P>, order: &OrderOf<P>, times: &Timetable) -> String {
     let mut text = format!(
         "{} actions in {} waves: {:.2} instead of {:.2} one after the other, {:.0} % less\n",
         plan.actions.len(),
@@ -98,7 +101,7 @@ fn chart(document: &PlanDocument, plan: &Plan, order: &PartialOrder, times: &Tim
     for (index, planned) in plan.actions.iter().enumerate() {
         let waits: Vec<String> = order.waits_for(index).iter().map(|before| (before + 1).to_string()).collect();
         let bar = bar(times.spans[index], times.makespan);
-        let what = document.problem.action(&planned.action);
+        let what = problem.action(&planned.action);
         let row = format!("  {:>3}  {what:<36}  {bar}  {}", index + 1, waits.join(", "));
         let _ = writeln!(text, "{}", row.trim_end());
     }
@@ -114,7 +117,7 @@ fn bar([begin, end]: [f64; 2], makespan: f64) -> String {
 }
 
 /// The graph in the language of Graphviz.
-fn dot(order: &PartialOrder, label: impl Fn(usize) -> String) -> String {
+fn dot<T: Display>(order: &PartialOrder<T>, label: impl Fn(usize) -> String) -> String {
     let quoted = |text: String| text.replace('\\', "\\\\").replace('"', "\\\"");
     let mut text = "digraph plan {\n  rankdir=LR;\n  node [shape=box];\n".to_string();
     for action in 0..order.graph.node_count() {

@@ -26,7 +26,7 @@ pub(crate) struct PartialOrder {
     pub(crate) required_margin: Real,
     /// Smallest margin over all states that were asked about.
     pub(crate) margin: Bracket,
-    /// How many modules may move at once.
+    /// How many moves may be under way at once.
     pub(crate) most_at_once: u64,
     /// Whether every action was looked at within the time allowed.
     pub(crate) complete: bool,

@@ -36,6 +36,7 @@ use super::load_range_report::LoadRangeReport;
 use super::partial_order_report::PartialOrderReport;
 use super::plan_document::{LinkagePlanDocument, PlanDocument};
 use super::{layout, wire};
+use crate::reconfigure::linkage::assembly::Touched;
 use crate::robot::linkage::{self as linkage_core, Linkage};
 use crate::robot::{Catalogue, Configuration, Goal};
 use crate::spatial::{Rotation, Vec3};
@@ -75,7 +76,18 @@ pub fn write_structure(structure: &NamedStructure) -> Result<String, Unwritable>
 /// # Errors
 /// A number that is not finite, or a document without a plan.
 pub fn write_partial_order(document: &PlanDocument, report: &PartialOrderReport<'_>) -> Result<String, Unwritable> {
-    text(&partial_order::wire(document, report)?)
+    text(&partial_order::of_lattice(document, report)?)
+}
+
+/// Writes a `partial-order/1` report about the best plan of a document for a linkage.
+///
+/// # Errors
+/// A number that is not finite, or a document without a plan.
+pub fn write_linkage_partial_order(
+    document: &LinkagePlanDocument,
+    report: &PartialOrderReport<'_, Touched>,
+) -> Result<String, Unwritable> {
+    text(&partial_order::of_linkage(document, report)?)
 }
 
 /// Writes a `configuration/1` file that reads back equal, bit for bit. A

@@ -1,18 +1,42 @@
 //! The partial order of a plan to `partial-order/1`.
 
+use std::fmt;
+
 use petgraph::visit::EdgeRef;
 
 use super::super::partial_order_report::PartialOrderReport;
-use super::super::plan_document::PlanDocument;
+use super::super::plan_document::{LinkagePlanDocument, PlanDocument};
 use super::super::wire::{self, NonNegative, Real};
 use super::lattice_plan::LatticePlans;
-use super::sequence::sequence;
+use super::linkage_plan::LinkagePlans;
+use super::sequence::{Family, sequence};
 use super::{Unwritable, bracket};
+use crate::reconfigure::Plan;
+use crate::reconfigure::linkage::assembly::Touched;
 
-pub(super) fn wire(document: &PlanDocument, report: &PartialOrderReport<'_>) -> Result<wire::PartialOrder, Unwritable> {
+pub(super) fn of_lattice(
+    document: &PlanDocument,
+    report: &PartialOrderReport<'_>,
+) -> Result<wire::PartialOrder, Unwritable> {
+    wire(&mut LatticePlans::new(document), document.report.plan.as_ref(), report)
+}
+
+pub(super) fn of_linkage(
+    document: &LinkagePlanDocument,
+    report: &PartialOrderReport<'_, Touched>,
+) -> Result<wire::PartialOrder, Unwritable> {
+    wire(&mut LinkagePlans { problem: &document.problem }, document.report.plan.as_ref(), report)
+}
+
+/// Of a plan whose actions `family` writes.
+fn wire<F: Family, T: fmt::Display>(
+    family: &mut F,
+    plan: Option<&Plan<F::Action, F::Connection>>,
+    report: &PartialOrderReport<'_, T>,
+) -> Result<wire::PartialOrder, Unwritable> {
     let PartialOrderReport { options, order, times } = *report;
-    let plan = document.report.plan.as_ref().ok_or_else(|| Unwritable::new("the order of no plan"))?;
-    let plan = sequence(&mut LatticePlans::new(document), 0, plan)?;
+    let plan = plan.ok_or_else(|| Unwritable::new("the order of no plan"))?;
+    let plan = sequence(family, 0, plan)?;
     let actions = plan.actions.into_iter().enumerate().map(|(index, action)| {
         let incoming = order.graph.edges_directed(petgraph::graph::NodeIndex::new(index), petgraph::Incoming);
         let mut waits_for: Vec<wire::Wait> = incoming

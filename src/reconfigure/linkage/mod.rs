@@ -16,7 +16,7 @@ mod compose;
 mod contacts;
 mod domain;
 mod goal;
-mod joined;
+pub(super) mod joined;
 mod motion_range;
 mod moves;
 mod oracle;
@@ -29,9 +29,10 @@ mod sides;
 mod solve;
 mod state;
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;
 mod wander;
 
+pub use super::partial_order::linkage::partial_order;
 pub use action::{Action, Half};
 pub use motion_range::{MotionRange, NotABridge, Stand, Turning, motion_range};
 pub use solve::solve;

@@ -4,46 +4,29 @@
 
 use std::ops::Range;
 
-use crate::reconfigure::action::Action;
 use crate::reconfigure::plan::Plan;
 
-/// What the actions of a group do.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
-    /// They engage connections.
-    Attach,
-    /// They release connections.
-    Detach,
-    /// The one action moves a module.
-    Move {
-        /// The module.
-        module: usize,
-    },
-}
+use super::family::{BecauseOf, Family, Kind};
 
 /// Consecutive actions of one kind.
 #[derive(Clone, Debug)]
-pub struct Group {
+pub struct Group<A> {
     /// What they do.
     pub kind: Kind,
     /// Their indices in the plan.
     pub indices: Range<usize>,
     /// The actions.
-    pub actions: Vec<Action>,
+    pub actions: Vec<A>,
 }
 
-impl Group {
+impl<A: Copy> Group<A> {
     /// The groups of a plan, in its order.
-    pub fn of(plan: &Plan) -> Vec<Self> {
+    pub fn of<F: Family<Action = A>>(plan: &Plan<A, F::Held>) -> Vec<Self> {
         let mut groups: Vec<Self> = Vec::new();
         for (index, action) in plan.actions.iter().map(|planned| planned.action).enumerate() {
-            let kind = match action {
-                Action::Attach(_) => Kind::Attach,
-                Action::Detach(_) => Kind::Detach,
-                Action::Move { module, .. } => Kind::Move { module },
-            };
+            let kind = F::kind(&action);
             match groups.last_mut() {
-                Some(last) if last.kind == kind && last.moving().is_none() => {
+                Some(last) if last.kind == kind && !last.is_move() => {
                     last.actions.push(action);
                     last.indices.end = index + 1;
                 }
@@ -53,24 +36,13 @@ impl Group {
         groups
     }
 
-    /// The module that it moves.
-    pub fn moving(&self) -> Option<usize> {
-        match self.kind {
-            Kind::Move { module } => Some(module),
-            Kind::Attach | Kind::Detach => None,
-        }
+    /// Whether it is a move.
+    pub fn is_move(&self) -> bool {
+        self.kind == Kind::Move
     }
 
-    /// Whether one of the two moves a module that the other names.
-    pub fn shares_module(&self, other: &Self) -> bool {
-        let moves = |a: &Self, b: &Self| a.moving().is_some_and(|module| b.names(module));
-        moves(self, other) || moves(other, self)
-    }
-
-    fn names(&self, module: usize) -> bool {
-        self.actions.iter().any(|action| match *action {
-            Action::Attach(connection) | Action::Detach(connection) => connection.modules().contains(&module),
-            Action::Move { module: own, support, .. } => own == module || support == Some(module),
-        })
+    /// Why the two never change places nor overlap.
+    pub fn bound<F: Family<Action = A>>(&self, other: &Self) -> Option<BecauseOf<F>> {
+        self.actions.iter().find_map(|one| other.actions.iter().find_map(|two| F::bound(one, two)))
     }
 }

@@ -8,22 +8,28 @@
 //! before, and a set of actions under way, each of which could begin. [`partial_order`] goes through all such pairs:
 //!
 //! - each action is legal out of each set of done actions that it can meet, and leads to the same state whatever the
-//!   order (`growth`, by the definitions of the replay);
-//! - a module on its way hits none that rests, by its sweep, and none that moves as well, since boxes that hold all
-//!   their ways are apart (`overlap`);
-//! - the oracle proves the margin at rest and on the way, for modules that move at once on the product of their
-//!   phases, sampled and refined around the worst as a single move is: nothing is proved between samples. Contact
-//!   between two moving modules is left out, which never flatters;
+//!   order, by the definitions of the replay;
+//! - what is on its way hits nothing that rests, by its sweep, and nothing that moves as well, by a proof for all
+//!   combinations of their phases (`lattice`, `linkage`);
+//! - the oracle proves the margin at rest and on the way, for moves under way at once on the product of their
+//!   phases (`product`), sampled and refined around the worst as a single move is: nothing is proved between samples.
+//!   Contact between what moves by itself and what moves by itself is left out, which never flatters;
 //! - attaching and detaching need no states of their own: while connections are being released no state is worse
 //!   than with all of them open, while they are being engaged none is worse than before (statics: monotony).
 //!
-//! There may be exponentially many such moments, so the order grows from the plan's own sequence: each action is let
-//! go as early as everything that this newly allows can be checked, and waits otherwise. Knows lattices; knows no
-//! search.
+//! There may be exponentially many such moments, so the order grows from the plan's own sequence (`growth`,
+//! `meeting`): each action is let go as early as everything that this newly allows can be checked, and waits
+//! otherwise. What that takes of a robot is a `family`: modules in a lattice are one, linkages another. Knows no search.
 
+mod asked;
+mod family;
 mod groups;
 mod growth;
-mod overlap;
+mod lattice;
+pub(super) mod linkage;
+mod meeting;
+mod precedence;
+mod product;
 #[cfg(test)]
 mod tests;
 mod timetable;
@@ -38,10 +44,12 @@ use petgraph::graph::{DiGraph, NodeIndex};
 use crate::robot::Configuration;
 use crate::statics::Bracket;
 
+use super::assembly::Touched;
 use super::plan::Plan;
 use super::refusal::Refusal;
 use super::replay::Fault;
-use growth::Growth;
+use growth::{Growth, least};
+use lattice::Lattice;
 pub use timetable::Timetable;
 
 /// What may overlap and what may be spent on finding out.
@@ -49,7 +57,7 @@ pub use timetable::Timetable;
 pub struct OrderOptions {
     /// Margin that every state must have.
     pub required: f64,
-    /// How many modules may move at once.
+    /// How many moves may be under way at once.
     pub most_at_once: usize,
     /// How many sets of done actions the order may allow.
     pub max_states: usize,
@@ -72,19 +80,25 @@ impl OrderOptions {
     }
 }
 
-/// Why an action waits for another.
+/// Why an action waits for another; `T` is what a module hits.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Because {
+pub enum Because<T = Touched> {
     /// Both concern a module that one of them moves.
     SameModule,
     /// Without it the action, or one that comes before it in the plan, is not legal.
-    NotLegal(Fault),
+    NotLegal(Fault<T>),
+    /// Both turn the same joint, or concern the same connection.
+    SameJoint,
     /// In the other order the robot would end up connected in another way.
     OtherState,
-    /// The two modules could hit each other on their ways.
+    /// In the other order modules would end up elsewhere in the world.
+    OtherPlaces,
+    /// What the two move could hit each other, or something else, on their ways.
     WaysCross,
     /// One module moves along the other.
     HoldsTheOther,
+    /// Each would carry a part of what the other moves or turns on, neither all of it.
+    Entangled,
     /// The robot would fall apart.
     Disconnected,
     /// The margin would be too small.
@@ -93,11 +107,14 @@ pub enum Because {
     NotChecked,
 }
 
-impl fmt::Display for Because {
+impl<T: fmt::Display> fmt::Display for Because<T> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::SameModule => f.write_str("same module"),
             Self::NotLegal(fault) => write!(f, "else {fault}"),
+            Self::SameJoint => f.write_str("same joint or connection"),
+            Self::OtherPlaces => f.write_str("else modules end up elsewhere"),
+            Self::Entangled => f.write_str("each carries a part of what the other moves"),
             Self::OtherState => f.write_str("else the connections differ"),
             Self::WaysCross => f.write_str("their ways cross"),
             Self::HoldsTheOther => f.write_str("one moves along the other"),
@@ -123,10 +140,10 @@ pub struct Checked {
 
 /// Which actions of a plan have to wait for which others.
 #[derive(Clone, Debug)]
-pub struct PartialOrder {
+pub struct PartialOrder<T = Touched> {
     /// Node i is action i of the plan. An arrow leads from an action to one that must wait until it has ended; arrows
     /// that follow from others are left out.
-    pub graph: DiGraph<(), Because>,
+    pub graph: DiGraph<(), Because<T>>,
     /// Smallest margin over all states that were asked about.
     pub margin: Bracket,
     /// What was gone through.
@@ -137,7 +154,7 @@ pub struct PartialOrder {
 
 /// Why a plan has no partial order.
 #[derive(Clone, Debug, PartialEq)]
-pub enum OrderError {
+pub enum OrderError<T = Touched> {
     /// The oracle cannot assess the robot.
     Refused(Refusal),
     /// The plan does not even hold in its own order.
@@ -145,11 +162,11 @@ pub enum OrderError {
         /// The action; `None` for the start.
         action: Option<usize>,
         /// What is wrong.
-        because: Because,
+        because: Because<T>,
     },
 }
 
-impl fmt::Display for OrderError {
+impl<T: fmt::Display> fmt::Display for OrderError<T> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Refused(refusal) => refusal.fmt(f),
@@ -161,9 +178,9 @@ impl fmt::Display for OrderError {
     }
 }
 
-impl std::error::Error for OrderError {}
+impl<T: fmt::Debug + fmt::Display> std::error::Error for OrderError<T> {}
 
-impl From<Refusal> for OrderError {
+impl<T> From<Refusal> for OrderError<T> {
     fn from(refusal: Refusal) -> Self {
         Self::Refused(refusal)
     }
@@ -178,10 +195,10 @@ impl From<Refusal> for OrderError {
 /// # Errors
 /// [`OrderError::Broken`] for a plan that does not hold in its own order.
 pub fn partial_order(start: &Configuration, plan: &Plan, options: &OrderOptions) -> Result<PartialOrder, OrderError> {
-    Growth::new(start, plan, options).grown()
+    Growth::new(Lattice::new(start, least(options.required)), plan, options).grown()
 }
 
-impl PartialOrder {
+impl<T> PartialOrder<T> {
     /// The actions that one waits for, ascending.
     pub fn waits_for(&self, action: usize) -> Vec<usize> {
         let mut before: Vec<usize> = self

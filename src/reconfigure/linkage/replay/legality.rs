@@ -14,14 +14,14 @@ use super::Fault;
 
 /// A legal action: the state after it, and the way of what moves.
 #[derive(Clone, Debug)]
-pub(super) struct Transition {
+pub struct Transition {
     pub after: Linkage,
     pub path: Option<Path>,
 }
 
 /// The way of one side of a joint or connection.
 #[derive(Clone, Debug)]
-pub(super) struct Path {
+pub struct Path {
     /// The bodies that move.
     pub carried: Vec<BodyOf>,
     pub motion: Motion,
@@ -37,7 +37,7 @@ const CHECKED_DEGREES: f64 = 3.0;
 const STEP_DEGREES: f64 = 3e-5;
 
 /// Where an action leads from a state.
-pub(super) fn transition(before: &Linkage, action: &Action) -> Result<Transition, Fault> {
+pub fn transition(before: &Linkage, action: &Action) -> Result<Transition, Fault> {
     match *action {
         Action::Attach(connection) => attach(before, connection),
         Action::Detach(connection) => detach(before, connection),

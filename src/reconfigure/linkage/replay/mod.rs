@@ -6,8 +6,8 @@
 //! planner the robot data, the assembly of structures and the oracle.
 
 mod arrival;
-mod legality;
-mod transit;
+pub(in crate::reconfigure) mod legality;
+pub(in crate::reconfigure) mod transit;
 
 use crate::reconfigure::plan::{IfStronger, Plan};
 use crate::reconfigure::refusal::Refusal;

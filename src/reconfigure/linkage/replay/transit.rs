@@ -78,7 +78,8 @@ impl<'a> Checker<'a> {
     }
 }
 
-fn is_connected(linkage: &Linkage) -> bool {
+/// Whether joints and engaged connections join all bodies.
+pub fn is_connected(linkage: &Linkage) -> bool {
     let joined = Joined::new(linkage);
     let whole = joined.whole(linkage);
     (1..joined.bodies.len()).all(|body| whole.equiv(0, body))
@@ -86,7 +87,7 @@ fn is_connected(linkage: &Linkage) -> bool {
 
 /// The first thing that something hits on its way. Bodies that a joint or an engaged connection holds
 /// together do not hit each other.
-fn first_hit(before: &Linkage, surroundings: &Surroundings, path: &Path) -> Option<(f64, Touched)> {
+pub fn first_hit(before: &Linkage, surroundings: &Surroundings, path: &Path) -> Option<(f64, Touched)> {
     let poses = poses_at(before, path, 0.0);
     let solid = |body: BodyOf| {
         let kind = &before.module_type(body.module).bodies[body.body];
@@ -108,7 +109,7 @@ fn first_hit(before: &Linkage, surroundings: &Surroundings, path: &Path) -> Opti
 }
 
 /// The first forbidden region that something passes through on its way.
-fn first_passed(before: &Linkage, off_limits: &Surroundings, path: &Path) -> Option<(f64, usize)> {
+pub fn first_passed(before: &Linkage, off_limits: &Surroundings, path: &Path) -> Option<(f64, usize)> {
     let poses = poses_at(before, path, 0.0);
     let passed = path.carried.iter().filter_map(|body| {
         let kind = &before.module_type(body.module).bodies[body.body];

@@ -20,13 +20,13 @@ use super::replay::replay;
 use super::solve::solve;
 
 /// A module of a type by name at a pose.
-fn module(catalogue: &Catalogue, kind: &str, id: usize, pose: Pose, joints: &[i32]) -> Module {
+pub fn module(catalogue: &Catalogue, kind: &str, id: usize, pose: Pose, joints: &[i32]) -> Module {
     let module_type = catalogue.find(kind).expect("a type of the catalogue");
     Module { id: format!("m{id}"), module_type, pose, joints: joints.to_vec(), fixed: false }
 }
 
 /// A robot of modules in an empty world, everything that meets engaged.
-fn robot(catalogue: Catalogue, modules: Vec<Module>) -> Linkage {
+pub fn robot(catalogue: Catalogue, modules: Vec<Module>) -> Linkage {
     let mut linkage = Linkage {
         catalogue: Arc::new(catalogue),
         gravity: Vec3::zeros(),
@@ -42,7 +42,7 @@ fn robot(catalogue: Catalogue, modules: Vec<Module>) -> Linkage {
 
 /// A chain of universal modules with these joints, each docked with its -Z of A to -Z of B of the one before,
 /// turned by so many quarters.
-fn chain(joints: &[[i32; 3]], rolls: &[i32]) -> Linkage {
+pub fn chain(joints: &[[i32; 3]], rolls: &[i32]) -> Linkage {
     let catalogue = Catalogue::rofi();
     let kind = &catalogue.module_types[0];
     let [a, b] = ["A-Z", "B-Z"].map(|name| kind.port(name).expect("a dock"));
@@ -60,7 +60,7 @@ fn chain(joints: &[[i32; 3]], rolls: &[i32]) -> Linkage {
 
 /// Nodes and struts in turn, from a node at the origin; each strut leaves the node before it at one of these spots
 /// in degrees (azimuth, polar, spin).
-fn string(spots: &[[i32; 3]]) -> Linkage {
+pub fn string(spots: &[[i32; 3]]) -> Linkage {
     let catalogue = Catalogue::freesn();
     let mut modules = vec![module(&catalogue, "node", 0, Pose::identity(), &[])];
     for &[azimuth, polar, spin] in spots {
@@ -82,7 +82,7 @@ fn string(spots: &[[i32; 3]]) -> Linkage {
 }
 
 /// The same robot, its first module held, under gravity over the ground or without.
-fn standing(mut linkage: Linkage, ground: Option<f64>) -> Linkage {
+pub fn standing(mut linkage: Linkage, ground: Option<f64>) -> Linkage {
     linkage.gravity = Vec3::new(0.0, 0.0, -9.81);
     linkage.modules[0].fixed = true;
     linkage.environment.ground = ground.map(|height| Ground { height, friction: 0.8 });
@@ -90,7 +90,7 @@ fn standing(mut linkage: Linkage, ground: Option<f64>) -> Linkage {
 }
 
 /// A goal of interchangeable modules in the world frame.
-fn goal(linkage: Linkage) -> Goal {
+pub fn goal(linkage: Linkage) -> Goal {
     Goal { linkage, matching: Matching::default() }
 }
 
@@ -100,7 +100,7 @@ fn anywhere(linkage: Linkage) -> Goal {
 }
 
 /// Plans and has every plan replayed.
-fn plan(start: &Linkage, goal: &Goal, options: &Options) -> Report<Action, Held> {
+pub fn plan(start: &Linkage, goal: &Goal, options: &Options) -> Report<Action, Held> {
     let report = solve(start, goal, options, &mut |_| {}).expect("the input is sound");
     let required = report.required.unwrap_or(f64::NEG_INFINITY);
     for plan in report.plan.iter().chain(&report.alternatives) {
@@ -112,7 +112,7 @@ fn plan(start: &Linkage, goal: &Goal, options: &Options) -> Report<Action, Held>
 }
 
 /// The plan of a report that must have one.
-fn solved(report: &Report<Action, Held>) -> &Plan<Action, Held> {
+pub fn solved(report: &Report<Action, Held>) -> &Plan<Action, Held> {
     assert_eq!(report.outcome, Outcome::Solved);
     report.plan.as_ref().expect("solved")
 }
