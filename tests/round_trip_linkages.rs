@@ -206,6 +206,7 @@ prop_compose! {
             plan: (!labelled).then(|| plan(&start, &[], margin)),
             too_weak: start.connections.iter().map(|&held| (Held::Ports(held), Bracket::new(-2.0, -1.0))).collect(),
             never_move: labelled.then(|| (0..start.modules.len()).rev().collect()),
+            nearest: None,
             cut_by: labelled.then_some(Limit::Memory),
         });
         let weakest = start.connections.first().map(|&connection| Held::Ports(connection));

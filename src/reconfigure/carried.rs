@@ -71,16 +71,13 @@ impl<'a> Carried<'a> {
         }
         let (occupancy, rest) = self.kept.get_mut(&others)?;
         let by = shift(step.from, self.domain.problem.start().pitch());
-        let mut margin = way.margin.lower;
+        let mut supports = Vec::with_capacity(way.reaches.len());
         for (support, reach) in &way.reaches {
-            let support = occupancy.at(displaced(*support, step.from))?;
-            let found = self.rests.utilisation(rest, support, reach.moved(&by), 1.0 - floor);
-            if !(1.0 - found >= floor) {
-                return None;
-            }
-            margin = margin.min(1.0 - found);
+            supports.push((occupancy.at(displaced(*support, step.from))?, reach.moved(&by)));
         }
-        Some(margin)
+        let most = self.rests.utilisations(rest, &supports, 1.0 - floor).ok()?;
+        let margin = most.iter().map(|most| 1.0 - most).fold(way.margin.lower, f64::min);
+        (margin >= floor).then_some(margin)
     }
 
     /// Keeps all modules but the one that moves; the oldest are forgotten.

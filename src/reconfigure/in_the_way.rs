@@ -30,8 +30,23 @@ pub struct InTheWay<A = Action, C = FaceConnection> {
     /// Modules of the start, not fixed, that stay where they are in every state that can be reached with the required
     /// margin; `None` where not all of them were seen.
     pub never_move: Option<Vec<usize>>,
+    /// How close a decomposition came to the goal with the margin required. It looks for nothing else, so that the
+    /// rest is what start and goal alone tell.
+    pub nearest: Option<Nearest>,
     /// What ended this search before it was done.
     pub cut_by: Option<Limit>,
+}
+
+/// The state at a dead end with the fewest modules missing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Nearest {
+    /// Modules of the robot.
+    pub modules: usize,
+    /// Those that were where the goal wants one of their kind.
+    pub in_place: usize,
+    /// Of the others, those that could not leave their cells at all: buried, needed to hold the robot together, held, or with loads of
+    /// their own. The rest found no way, with the margin required, to a cell that could be filled.
+    pub stuck: usize,
 }
 
 impl<A, C: Copy + PartialEq> InTheWay<A, C> {
@@ -43,7 +58,12 @@ impl<A, C: Copy + PartialEq> InTheWay<A, C> {
         let allowed = 1.0 - required;
         let factor = |margin: f64| if allowed > 0.0 { ((1.0 - margin) / allowed).max(1.0) } else { f64::INFINITY };
         let strength_factor = Bracket::new(factor(margin.upper), factor(margin.lower));
-        Self { margin, strength_factor, plan, too_weak: Vec::new(), never_move: None, cut_by: None }
+        Self { margin, strength_factor, plan, too_weak: Vec::new(), never_move: None, nearest: None, cut_by: None }
+    }
+
+    /// What a decomposition without a plan knows.
+    pub(super) fn of_decomposition(nearest: Nearest, at_most: f64, required: f64) -> Self {
+        Self { nearest: Some(nearest), ..Self::new(None, at_most, required) }
     }
 
     /// Notes which connections are too weak for `required`, as a replay of the plan found them.

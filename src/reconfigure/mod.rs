@@ -55,7 +55,7 @@ pub use crate::robot::{Motion, Turn};
 pub use action::Action;
 pub use baseline::Baseline;
 pub use engines::MARGIN_TOLERANCE;
-pub use in_the_way::InTheWay;
+pub use in_the_way::{InTheWay, Nearest};
 pub use layout::{Bond, Layout, Placed};
 pub use moves::Move;
 pub use options::{Event, Known, Method, News, Options, Pass, Reduction};

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use steadfast::reconfigure::replay::Replay;
-use steadfast::reconfigure::{InTheWay, Limit, Objective, Outcome, Plan, Report};
+use steadfast::reconfigure::{InTheWay, Limit, Nearest, Objective, Outcome, Plan, Report};
 use steadfast::statics::{Bracket, Rung};
 
 use crate::family::{Answer, Family};
@@ -141,7 +141,18 @@ fn in_the_way<F: Family>(text: &mut String, problem: &F, found: &InTheWay<F::Act
     let mut line = |sentence: String| {
         let _ = writeln!(text, "  {sentence}");
     };
-    if upper == f64::NEG_INFINITY {
+    if let Some(Nearest { modules, in_place, stuck }) = found.nearest {
+        line(format!("at best {in_place} of {modules} modules were in place"));
+        if stuck > 0 {
+            line(format!("of the others {stuck} could not leave their cells: buried, holding others, held or loaded"));
+        }
+        if stuck + in_place < modules {
+            let without = modules - in_place - stuck;
+            let safely =
+                if required.is_finite() { format!(" with a margin of {required} all along") } else { String::new() };
+            line(format!("{without} found no way to a cell to fill{safely}"));
+        }
+    } else if upper == f64::NEG_INFINITY {
         line("whatever margin is required, and however strong the connections, nothing leads to the goal".to_string());
     } else if lower == f64::NEG_INFINITY {
         line("no plan was found with smaller margins either".to_string());

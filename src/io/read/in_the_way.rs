@@ -51,6 +51,7 @@ pub(super) fn in_the_way<F: Family>(
         plan: plan.flatten(),
         too_weak,
         never_move: wire.never_move.is_some().then_some(never_move),
+        nearest: None,
         cut_by: wire.cut_by.map(limit),
     })
 }

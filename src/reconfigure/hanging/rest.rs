@@ -17,6 +17,10 @@ const GRID: f64 = 4.0;
 /// What places may be off by rounding, in steps.
 const ROUNDING: f64 = 1e-10;
 
+/// Questions about one rest that are asked at the same time. The same for any number of threads, since all that
+/// were asked are known afterwards.
+const AT_ONCE: usize = 8;
+
 /// By support and place, counted from it in steps.
 type Place = (usize, [i32; 3]);
 
@@ -121,46 +125,71 @@ impl<'a> Rests<'a> {
         Rest::new(self.configuration, &self.assembler, (module, placements, engaged), self.memory.clone())
     }
 
-    /// Proved upper bound on the utilisation of `rest` with the module's weight on `support`, wherever in `reach` it
-    /// acts. Asks no more than whether that is at most `level`; infinite where that was not proved.
-    pub fn utilisation(&mut self, rest: &mut Rest, support: usize, reach: Reach, level: f64) -> f64 {
+    /// Proved upper bounds on the utilisation of `rest` with the module's weight on one support after another, each
+    /// wherever in its reach it acts. Asks no more than whether that is at most `level`.
+    ///
+    /// # Errors
+    /// The place of the first of the supports of which that was not proved.
+    pub fn utilisations(
+        &mut self,
+        rest: &mut Rest,
+        supports: &[(usize, Reach)],
+        level: f64,
+    ) -> Result<Vec<f64>, usize> {
         if !rest.is_plain {
-            return f64::INFINITY;
+            return Err(0);
         }
         let gravity = self.configuration.gravity;
         let vertical = (0..3).find(|&axis| (0..3).all(|other| other == axis || gravity[other] == 0.0));
         let pitch = self.configuration.pitch();
-        let corners = reach.corners(vertical, &rest.structure.bodies[support].com, pitch);
-        let key = |corner: &[i32; 3]| (support, *corner);
-        let is_open = |corner: &[i32; 3]| match rest.known.get(&key(corner)) {
-            Some(&(found, asked)) => !(found <= level || asked >= level),
-            None => true,
+        let places = |&(support, reach): &(usize, Reach)| -> Vec<Place> {
+            let corners = reach.corners(vertical, &rest.structure.bodies[support].com, pitch);
+            corners.into_iter().map(|corner| (support, corner)).collect()
         };
-        let mut open: Vec<[i32; 3]> = corners.iter().copied().filter(is_open).collect();
-        if !rest.is_settled && !open.is_empty() {
-            let corner = open.remove(0);
-            let asked = self.ask(rest, support, &corner, level);
-            let found = asked.as_ref().map_or(f64::INFINITY, |(found, _)| *found);
-            rest.known.insert(key(&corner), (found, level));
-            if let Some((_, memory)) = asked {
-                self.memory = Some(memory.clone());
-                rest.memory = Some(memory);
-                rest.is_settled = true;
-            }
-            if !(found <= level) {
-                return f64::INFINITY;
+        let places: Vec<Vec<Place>> = supports.iter().map(places).collect();
+        let mut open: Vec<Place> = Vec::new();
+        for place in places.iter().flatten() {
+            let is_open = rest.known.get(place).is_none_or(|&(found, asked)| !(found <= level || asked >= level));
+            if is_open && !open.contains(place) {
+                open.push(*place);
             }
         }
-        let asked: Vec<(f64, f64)> = open
-            .par_iter()
-            .map(|corner| (self.ask(rest, support, corner, level).map_or(f64::INFINITY, |(found, _)| found), level))
-            .collect();
-        rest.known.extend(open.iter().map(key).zip(asked));
-        let most = corners.iter().map(|corner| rest.known[&key(corner)].0).fold(0.0, f64::max);
-        if most <= level { most } else { f64::INFINITY }
+        let mut open = &open[..];
+        while let Some(first) = open.first() {
+            // The first answer is what all others begin from.
+            let at_once = if rest.is_settled { AT_ONCE.min(open.len()) } else { 1 };
+            let (now, later) = open.split_at(at_once);
+            if rest.is_settled {
+                let ask = |place: &Place| self.ask(rest, place, level).map_or(f64::INFINITY, |(found, _)| found);
+                let found: Vec<f64> = now.par_iter().map(ask).collect();
+                rest.known.extend(now.iter().copied().zip(found.into_iter().map(|found| (found, level))));
+            } else {
+                let asked = self.ask(rest, first, level);
+                let found = asked.as_ref().map_or(f64::INFINITY, |(found, _)| *found);
+                rest.known.insert(*first, (found, level));
+                if let Some((_, memory)) = asked {
+                    rest.is_settled = rest.memory.is_some();
+                    self.memory = Some(memory.clone());
+                    rest.memory = Some(memory);
+                }
+            }
+            if now.iter().any(|place| !(rest.known[place].0 <= level)) {
+                break;
+            }
+            open = later;
+        }
+        let most = |places: &Vec<Place>| {
+            let found = places.iter().map(|place| rest.known.get(place).map_or(f64::INFINITY, |known| known.0));
+            found.fold(0.0, f64::max)
+        };
+        let most: Vec<f64> = places.iter().map(most).collect();
+        match most.iter().position(|&most| !(most <= level)) {
+            Some(place) => Err(place),
+            None => Ok(most),
+        }
     }
 
-    fn ask(&self, rest: &Rest, support: usize, corner: &[i32; 3], level: f64) -> Option<(f64, Memory)> {
+    fn ask(&self, rest: &Rest, &(support, corner): &Place, level: f64) -> Option<(f64, Memory)> {
         let off_centre = Vec3::from(corner.map(f64::from)) * (self.configuration.pitch() / GRID);
         let at = Some(rest.structure.bodies[support].com + off_centre);
         let load = Load { body: support, force: rest.weight, torque: Vec3::zeros(), at };

@@ -2,12 +2,14 @@
 //!
 //! Knows which module goes where next; does not know which margins are worth trying.
 
+use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet, HashSet};
 
 use crate::reconfigure::assembly::Engagement;
 use crate::reconfigure::course::engagement;
 use crate::reconfigure::domain::Domain;
 use crate::reconfigure::hanging::{Reach, Rest, Rests};
+use crate::reconfigure::in_the_way::Nearest;
 use crate::reconfigure::layout::{Layout, Placed};
 use crate::reconfigure::moves::Move;
 use crate::robot::{Cell, Occupancy, Placement};
@@ -29,7 +31,10 @@ const PLACES: usize = 3;
 const IDLE: usize = 12;
 
 /// Carries per module, in all, after which an attempt gives up.
-const CARRIES: usize = 8;
+const CARRIES: usize = 32;
+
+/// How early a cell is taken, smallest first: how often it was not left empty at a dead end, steps, height, and a lot.
+type Rank = (Reverse<u32>, u32, i32, u64);
 
 /// One module carried from one cell to another.
 #[derive(Clone, Debug)]
@@ -40,8 +45,8 @@ pub struct Carry {
     pub margin: f64,
 }
 
-/// Is called before every carry; says whether to go on.
-pub type Watch<'w> = dyn FnMut() -> bool + 'w;
+/// Is called before every walk that is looked at, with the work done in the attempt so far; says whether to go on.
+pub type Watch<'w> = dyn FnMut(u64) -> bool + 'w;
 
 /// How an attempt ended.
 #[derive(Clone, Debug)]
@@ -49,9 +54,20 @@ pub enum Attempt {
     /// The goal's cells are filled.
     Done(Vec<Carry>),
     /// Nothing that was tried leads on.
-    Stuck,
+    Stuck(Nearest),
     /// The caller stopped it.
-    Stopped,
+    Stopped(Nearest),
+}
+
+/// Work that it is to look where one module can walk to, in questions about what the others carry.
+const WALK: u64 = 4;
+
+/// What a carry changes.
+struct Before {
+    layout: Layout,
+    placements: Vec<Placement>,
+    /// Modules that were not in place.
+    away: usize,
 }
 
 /// A robot on its way to the goal.
@@ -66,14 +82,20 @@ pub struct Builder<'a> {
     /// Where each module of the start is.
     placements: Vec<Placement>,
     carries: Vec<Carry>,
-    /// Layouts and placements before each carry.
-    before: Vec<(Layout, Vec<Placement>)>,
+    /// What was so before each carry.
+    before: Vec<Before>,
+    /// How often cells of the goal were empty at a dead end.
+    empty: BTreeMap<Cell, u32>,
     /// Empty cells of the goal that are open to the outside, and must stay so until they are filled.
     open: BTreeSet<Cell>,
     /// No layout is met twice.
     met: HashSet<Layout>,
     /// Dead ends that are still put up with.
     patience: usize,
+    /// Questions that had been asked before, and walks that were looked at since.
+    solves_before: u64,
+    walks: u64,
+    is_stopped: bool,
 }
 
 impl<'a> Builder<'a> {
@@ -91,52 +113,94 @@ impl<'a> Builder<'a> {
             placements: problem.start().modules.iter().map(|module| module.placement).collect(),
             carries: Vec::new(),
             before: Vec::new(),
+            empty: BTreeMap::new(),
             open: BTreeSet::new(),
             met: HashSet::from([layout.clone()]),
             patience,
+            solves_before: 0,
+            walks: 0,
+            is_stopped: false,
             layout,
         }
     }
 
     /// Carries modules until all are in place.
     ///
-    /// On a dead end the last carry is undone, on the next one the last two, and so on; as no layout is
-    /// met twice, other carries follow.
+    /// On a dead end all carries are undone back to before the last one that brought a module home, on the next
+    /// one to before the last two, then four, and so on. As no layout is met twice, other carries follow, and what was
+    /// left empty is filled earlier.
     pub fn run(mut self, ways: &mut Ways<'a>, rests: &mut Rests<'a>, watch: &mut Watch) -> Attempt {
+        self.solves_before = rests.solves();
         let modules = self.layout.placed().len();
         let (mut undo, mut fewest, mut idle) = (1, usize::MAX, 0);
+        let mut nearest = self.nearest();
         for _ in 0..CARRIES * modules.max(1) {
             let left = surplus(&self.layout, self.targets);
             if left.is_empty() {
                 return Attempt::Done(self.carries);
             }
-            if !watch() {
-                return Attempt::Stopped;
-            }
             idle = if left.len() < fewest { 0 } else { idle + 1 };
             fewest = fewest.min(left.len());
             // To wander about without bringing more modules home is a dead end as well.
-            if idle <= IDLE + 3 * fewest && self.carry_one(&left, ways, rests) {
+            if idle <= IDLE + 3 * fewest && self.carry_one(&left, ways, rests, watch) {
                 continue;
             }
-            idle = 0;
+            if left.len() < nearest.modules - nearest.in_place {
+                nearest = self.nearest();
+            }
+            if self.is_stopped {
+                return Attempt::Stopped(nearest);
+            }
             if self.carries.is_empty() || self.patience == 0 {
-                return Attempt::Stuck;
+                return Attempt::Stuck(nearest);
             }
             self.patience -= 1;
-            for _ in 0..undo {
-                if let (Some(_), Some((layout, placements))) = (self.carries.pop(), self.before.pop()) {
-                    (self.layout, self.placements) = (layout, placements);
-                }
-            }
+            self.undo(undo);
             undo = (undo * 2).min(modules);
+            (fewest, idle) = (usize::MAX, 0);
         }
-        Attempt::Stuck
+        Attempt::Stuck(nearest)
+    }
+
+    /// How close the robot is to the goal.
+    fn nearest(&self) -> Nearest {
+        let left = surplus(&self.layout, self.targets);
+        let modules = self.layout.placed().len();
+        let stuck = left.iter().filter(|&&mover| self.others_if_free(mover).is_none()).count();
+        Nearest { modules, in_place: modules - left.len(), stuck }
+    }
+
+    /// All other modules, if this one can leave them.
+    fn others_if_free(&self, mover: Placed) -> Option<Layout> {
+        let problem = self.domain.problem;
+        let class = problem.class(mover.class);
+        if class.fixed || !class.loads.is_empty() || class.turns {
+            return None;
+        }
+        let others = self.layout.placed().iter().copied().filter(|placed| placed.cell != mover.cell);
+        let others = Layout::new(others.collect());
+        let is_free = !self.domain.moves_of(&others, &mover).is_empty()
+            && (!problem.must_stay_connected() || is_connected(&others));
+        is_free.then_some(others)
+    }
+
+    /// Undoes carries back to before the last ones that brought so many modules home, or all.
+    fn undo(&mut self, homecomings: usize) {
+        for cell in vacant(&self.layout, self.targets).into_keys() {
+            *self.empty.entry(cell).or_default() += 1;
+        }
+        let mut away = surplus(&self.layout, self.targets).len();
+        let most = away + homecomings;
+        while away < most
+            && let (Some(_), Some(before)) = (self.carries.pop(), self.before.pop())
+        {
+            (self.layout, self.placements, away) = (before.layout, before.placements, before.away);
+        }
     }
 
     /// Carries one module on: to where one is wanted if that can be; else out of the way of others; else
     /// closer to where modules are wanted.
-    fn carry_one(&mut self, left: &[Placed], ways: &mut Ways<'a>, rests: &mut Rests<'a>) -> bool {
+    fn carry_one(&mut self, left: &[Placed], ways: &mut Ways<'a>, rests: &mut Rests<'a>, watch: &mut Watch) -> bool {
         let vacant = vacant(&self.layout, self.targets);
         self.open = open(&self.layout, &vacant.keys().copied().collect());
         let is_at_home = |placed: &Placed| self.targets.get(&placed.cell) == Some(&placed.class);
@@ -144,7 +208,7 @@ impl<'a> Builder<'a> {
         let home: Vec<Cell> = covers.iter().map(|placed| placed.cell).collect();
         let to_fill = self.filling_order(&home, &vacant);
         let movers = self.freeing_order(&home, left.iter().copied());
-        if movers.iter().any(|&mover| self.carry(mover, &to_fill, ways, rests)) {
+        if movers.iter().any(|&mover| self.carry(mover, &to_fill, ways, rests, watch)) {
             return true;
         }
         // What is buried, or closed off, comes free by what is nearest to it.
@@ -153,20 +217,21 @@ impl<'a> Builder<'a> {
         covers.sort_by_key(|placed| {
             (nearest.get(&placed.cell).copied().unwrap_or(u32::MAX), lot(self.seed, placed.cell))
         });
-        if covers.iter().any(|&cover| self.carry(cover, &to_fill, ways, rests)) {
+        if covers.iter().any(|&cover| self.carry(cover, &to_fill, ways, rests, watch)) {
             return true;
         }
         let closer = self.closer(&vacant);
-        movers.iter().any(|&mover| self.carry(mover, &closer, ways, rests))
-            || covers.iter().any(|&cover| self.carry(cover, &closer, ways, rests))
+        movers.iter().any(|&mover| self.carry(mover, &closer, ways, rests, watch))
+            || covers.iter().any(|&cover| self.carry(cover, &closer, ways, rests, watch))
     }
 
     /// Empty cells of the goal with how early they should be filled: outwards from what is in place.
-    fn filling_order(&self, home: &[Cell], vacant: &BTreeMap<Cell, u16>) -> BTreeMap<Cell, (u32, i32, u64)> {
+    fn filling_order(&self, home: &[Cell], vacant: &BTreeMap<Cell, u16>) -> BTreeMap<Cell, Rank> {
         let from_home = distances(home.iter().copied(), |cell| self.targets.contains_key(&cell));
         let rank = |cell: Cell| {
             let steps = from_home.get(&cell).copied().unwrap_or(u32::MAX);
-            (steps, cell[2], lot(self.seed, cell))
+            let empty = self.empty.get(&cell).copied().unwrap_or(0);
+            (Reverse(empty), steps, cell[2], lot(self.seed, cell))
         };
         vacant.keys().map(|&cell| (cell, rank(cell))).collect()
     }
@@ -176,18 +241,16 @@ impl<'a> Builder<'a> {
         let from_home = distances(home.iter().copied(), |cell| self.layout.is_filled(cell));
         let steps = |cell: Cell| from_home.get(&cell).copied().unwrap_or(u32::MAX);
         let mut movers: Vec<Placed> = movers.collect();
-        movers.sort_by_key(|placed| {
-            (std::cmp::Reverse((steps(placed.cell), placed.cell[2])), lot(self.seed, placed.cell))
-        });
+        movers.sort_by_key(|placed| (Reverse((steps(placed.cell), placed.cell[2])), lot(self.seed, placed.cell)));
         movers
     }
 
     /// All cells around by how close they are to the empty cells of the goal.
-    fn closer(&self, vacant: &BTreeMap<Cell, u16>) -> BTreeMap<Cell, (u32, i32, u64)> {
+    fn closer(&self, vacant: &BTreeMap<Cell, u16>) -> BTreeMap<Cell, Rank> {
         let [low, high] = self.bounds;
         let within = |cell: Cell| (0..3).all(|i| low[i] <= cell[i] && cell[i] <= high[i]);
         let steps = distances(vacant.keys().copied(), within);
-        steps.into_iter().map(|(cell, steps)| (cell, (steps, cell[2], lot(self.seed, cell)))).collect()
+        steps.into_iter().map(|(cell, steps)| (cell, (Reverse(0), steps, cell[2], lot(self.seed, cell)))).collect()
     }
 
     /// Carries a module to the first of the ranked cells that it can be carried to, if that is better than
@@ -195,25 +258,25 @@ impl<'a> Builder<'a> {
     fn carry(
         &mut self,
         mover: Placed,
-        ranked: &BTreeMap<Cell, (u32, i32, u64)>,
+        ranked: &BTreeMap<Cell, Rank>,
         ways: &mut Ways<'a>,
         rests: &mut Rests<'a>,
+        watch: &mut Watch,
     ) -> bool {
-        let class = self.domain.problem.class(mover.class);
-        if class.fixed || !class.loads.is_empty() || class.turns {
+        if self.is_stopped {
             return false;
         }
-        let rest = Layout::new(self.layout.placed().iter().copied().filter(|p| p.cell != mover.cell).collect());
-        if self.domain.moves_of(&rest, &mover).is_empty()
-            || (self.domain.problem.must_stay_connected() && !is_connected(&rest))
-        {
-            return false;
-        }
+        let Some(rest) = self.others_if_free(mover) else { return false };
         let mut shunned = BTreeSet::new();
         let mut others: Option<Rest> = None;
         let mut places = 0;
         let mut refused = BTreeSet::new();
         for _ in 0..DETOURS {
+            self.is_stopped |= !watch(rests.solves() - self.solves_before + WALK * self.walks);
+            if self.is_stopped {
+                return false;
+            }
+            self.walks += 1;
             let walk = Walk::new(self.domain, ways, (&rest, mover), self.floor, &shunned, self.bounds);
             let reached = walk.reached[1..].iter().copied().filter(|cell| !refused.contains(cell));
             let mut reached: Vec<Cell> = reached.filter(|cell| ranked.contains_key(cell)).collect();
@@ -242,11 +305,11 @@ impl<'a> Builder<'a> {
     }
 
     /// Whether a module may be put into a cell.
-    fn suits(&self, mover: Placed, cell: Cell, ranked: &BTreeMap<Cell, (u32, i32, u64)>, rest: &Layout) -> bool {
+    fn suits(&self, mover: Placed, cell: Cell, ranked: &BTreeMap<Cell, Rank>, rest: &Layout) -> bool {
         let Some(rank) = ranked.get(&cell) else { return false };
         let is_wanted = self.targets.get(&cell) == Some(&mover.class);
         // Where nothing is wanted, only steps ahead count.
-        let is_closer = ranked.get(&mover.cell).is_none_or(|own| rank.0 < own.0);
+        let is_closer = ranked.get(&mover.cell).is_none_or(|own| (rank.0, rank.1) < (own.0, own.1));
         if self.targets.get(&cell).is_some_and(|class| *class != mover.class) || !(is_wanted || is_closer) {
             return false;
         }
@@ -276,21 +339,19 @@ impl<'a> Builder<'a> {
                 rest.touching().into_iter().filter_map(|bond| engagement(&occupancy, bond)).collect();
             rests.without(module, &self.placements, &engaged)
         });
-        let level = 1.0 - self.floor;
-        let mut most: f64 = 0.0;
-        for (&cell, &reach) in reaches {
-            let support = occupancy.at(cell).expect("what holds a module is there");
-            let found = rests.utilisation(others, support, reach, level);
-            if !(found <= level) {
-                return Err(cell);
-            }
-            most = most.max(found);
+        let supports: Vec<(usize, Reach)> = reaches
+            .iter()
+            .map(|(&cell, &reach)| (occupancy.at(cell).expect("what holds a module is there"), reach))
+            .collect();
+        match rests.utilisations(others, &supports, 1.0 - self.floor) {
+            Ok(most) => Ok(1.0 - most.into_iter().fold(0.0, f64::max)),
+            Err(place) => Err(*reaches.keys().nth(place).expect("one of the supports")),
         }
-        Ok(1.0 - most)
     }
 
     fn take(&mut self, mover: Placed, to: Cell, path: Vec<Move>, margin: f64) {
-        self.before.push((self.layout.clone(), self.placements.clone()));
+        let away = surplus(&self.layout, self.targets).len();
+        self.before.push(Before { layout: self.layout.clone(), placements: self.placements.clone(), away });
         self.layout = self.layout.with_moved(mover.cell, Placed { cell: to, ..mover });
         let moved = self.placements.iter_mut().find(|placement| placement.cell == mover.cell);
         if let Some(placement) = moved {

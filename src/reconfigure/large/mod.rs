@@ -6,13 +6,14 @@
 //! - `walk` finds where one module can get to, by moves whose own margins (`ways`) are large enough;
 //! - `builder` chooses the module and its place, asks whether the others carry the walk
 //!   ([`hanging`](super::hanging)), uncovers what is buried, and undoes carries on dead ends;
-//! - `levels` says which margins to try for, the largest first;
+//! - `levels` says which margins to try for, and `effort` how much work each is worth;
 //! - `script` turns carries into a plan with what was proved of every action.
 //!
 //! Every transient state of the plan is proved to have the margin that the plan claims. Nothing is proved about
 //! other plans but what start and goal alone say. Modules that carry loads of their own stay where they are.
 
 mod builder;
+mod effort;
 mod levels;
 mod script;
 mod shape;
@@ -27,10 +28,12 @@ use planners::Limit;
 use super::domain::Domain;
 use super::engines::budget;
 use super::hanging::Rests;
+use super::in_the_way::{InTheWay, Nearest};
 use super::options::{Event, Known, News, Options, Pass};
 use super::plan::{Objective, Outcome, Plan, Proof, Report, Statistics};
 use crate::statics::Bracket;
 use builder::{Attempt, Builder};
+use effort::Effort;
 use levels::Levels;
 pub use script::Ends;
 use script::write;
@@ -63,7 +66,9 @@ pub fn decompose(
     // Every module that is not where the goal wants one moves at least once. In a free frame others might stay.
     let fewest = if problem.goal().is_free() { 0 } else { shape::surplus(problem.start_layout(), &targets).len() };
     let fewest = u32::try_from(fewest).unwrap_or(u32::MAX);
+    let mut effort = Effort::new(shape::surplus(problem.start_layout(), &targets).len());
     let mut plan: Option<Plan> = None;
+    let mut nearest: Option<Nearest> = None;
     let mut stopped = None;
     let mut statistics = Statistics::default();
     let asked = rests.counter();
@@ -83,7 +88,13 @@ pub fn decompose(
         let mut is_attained = false;
         for attempt in 0..if is_required { ATTEMPTS } else { 1 } {
             let seed = options.seed.wrapping_add(attempt);
-            let mut watch = || {
+            let Some(limit) = effort.limit(is_required) else { break };
+            let mut work = 0;
+            let mut watch = |done: u64| {
+                work = done;
+                if work > limit {
+                    return false;
+                }
                 statistics.expanded += 1;
                 on_event(&Event { news: News::Progress, known: known(plan.as_ref(), statistics.expanded) });
                 let bytes = options.measure_bytes.and_then(|measure| measure()).unwrap_or(0);
@@ -92,7 +103,9 @@ pub fn decompose(
                 stopped = budget.exceeded(&planners::Statistics { expanded, bytes, ..planners::Statistics::default() });
                 stopped.is_none()
             };
-            match Builder::new(domain, &targets, floor, seed, patience).run(&mut ways, &mut rests, &mut watch) {
+            let found = Builder::new(domain, &targets, floor, seed, patience).run(&mut ways, &mut rests, &mut watch);
+            effort.note(work, matches!(found, Attempt::Done(_)));
+            match found {
                 Attempt::Done(carries) => {
                     is_attained = true;
                     let written = write(domain, &mut ways, &carries, &ends);
@@ -103,18 +116,23 @@ pub fn decompose(
                         on_event(&Event { news, known: known(plan.as_ref(), statistics.expanded) });
                     }
                 }
-                Attempt::Stopped | Attempt::Stuck => {}
+                Attempt::Stopped(reached) | Attempt::Stuck(reached) => {
+                    nearest = nearest.into_iter().chain([reached]).max_by_key(|nearest| nearest.in_place);
+                }
             }
             if is_attained || stopped.is_some() {
                 break;
             }
         }
         levels.note(is_attained);
-        if stopped.is_some() {
+        if effort.limit(false).is_none() || stopped.is_some() {
             break;
         }
     }
     statistics.oracle_solves = rests.solves();
+    let nearest = nearest.filter(|_| options.explain && plan.is_none());
+    let in_the_way = nearest
+        .map(|nearest| InTheWay::of_decomposition(nearest, ends.at_most(), required.unwrap_or(f64::NEG_INFINITY)));
     Report {
         outcome: Outcome::OutOfBudget(stopped.unwrap_or(Limit::Incomplete)),
         objective: options.objective,
@@ -122,7 +140,7 @@ pub fn decompose(
         plan,
         alternatives: Vec::new(),
         alternatives_cut_by: None,
-        in_the_way: None,
+        in_the_way,
         proof: Proof { optimal: false, margin_at_most: ends.at_most(), moves_at_least: fewest },
         statistics,
     }

@@ -2,7 +2,7 @@
 //!
 //! Knows cells; knows neither moves nor forces.
 
-use std::collections::{BTreeMap, BTreeSet, VecDeque};
+use std::collections::{BTreeMap, BTreeSet, HashMap, VecDeque};
 
 use crate::reconfigure::layout::{Layout, Placed, neighbour};
 use crate::robot::{Cell, Face};
@@ -21,8 +21,9 @@ pub fn vacant(layout: &Layout, targets: &Targets) -> BTreeMap<Cell, u16> {
 }
 
 /// How many steps from face to face every cell of `within` is from the nearest of `sources`.
-pub fn distances(sources: impl IntoIterator<Item = Cell>, within: impl Fn(Cell) -> bool) -> BTreeMap<Cell, u32> {
-    let mut found: BTreeMap<Cell, u32> = sources.into_iter().map(|cell| (cell, 0)).collect();
+pub fn distances(sources: impl IntoIterator<Item = Cell>, within: impl Fn(Cell) -> bool) -> HashMap<Cell, u32> {
+    let mut found: HashMap<Cell, u32> = sources.into_iter().map(|cell| (cell, 0)).collect();
+    // Which of those equally far comes first changes no distance.
     let mut queue: VecDeque<Cell> = found.keys().copied().collect();
     while let Some(cell) = queue.pop_front() {
         let next = found[&cell] + 1;
@@ -59,21 +60,32 @@ pub fn open(layout: &Layout, wanted: &BTreeSet<Cell>) -> BTreeSet<Cell> {
     let all = layout.placed().iter().map(|placed| placed.cell).chain(wanted.iter().copied());
     let [low, high] = bounds(all, 1);
     let is_free = |cell: Cell| (0..3).all(|i| low[i] <= cell[i] && cell[i] <= high[i]) && !layout.is_filled(cell);
-    // Most are a few straight steps from the outside, which a search depth first finds at once.
     let is_outside = |cell: Cell| (0..3).any(|i| cell[i] == low[i] || cell[i] == high[i]);
-    let mut known = BTreeSet::new();
+    // Most are a few straight steps from the outside, which a search depth first finds at once. What it meets
+    // counts as closed until then.
+    let mut known: HashMap<Cell, bool> = HashMap::new();
     let is_open = |cell: &&Cell| {
-        let mut seen = BTreeSet::from([**cell]);
-        let mut stack = vec![**cell];
+        if let Some(&is_open) = known.get(*cell) {
+            return is_open;
+        }
+        known.insert(**cell, false);
+        let (mut seen, mut stack) = (vec![**cell], vec![**cell]);
         while let Some(at) = stack.pop() {
-            if is_outside(at) || known.contains(&at) {
-                known.append(&mut seen);
-                return true;
-            }
+            let mut is_open = is_outside(at);
             for beside in Face::ALL.map(|face| neighbour(at, face)) {
-                if is_free(beside) && seen.insert(beside) {
-                    stack.push(beside);
+                match known.get(&beside) {
+                    Some(&beside) => is_open |= beside,
+                    None if is_free(beside) => {
+                        known.insert(beside, false);
+                        seen.push(beside);
+                        stack.push(beside);
+                    }
+                    None => {}
                 }
+            }
+            if is_open {
+                known.extend(seen.into_iter().map(|cell| (cell, true)));
+                return true;
             }
         }
         false

@@ -101,14 +101,9 @@ impl<'a> Bounds<'a> {
         if !asked.are_connected {
             return None;
         }
-        let mut carried = BTreeMap::new();
-        for (&support, &reach) in &reaches {
-            let most = self.rests.utilisation(&mut asked.rest, support, reach, level);
-            if !(most <= level) {
-                return None;
-            }
-            carried.insert(support, most);
-        }
+        let supports: Vec<(usize, Reach)> = reaches.into_iter().collect();
+        let most = self.rests.utilisations(&mut asked.rest, &supports, level).ok()?;
+        let carried: BTreeMap<usize, f64> = supports.iter().map(|&(support, _)| support).zip(most).collect();
         let sample = |(grip, &phase): (crate::reconfigure::hanging::Grip, &f64)| {
             let most = grip.utilisation.upper.max(carried[&grip.support]);
             Sample {

@@ -14,17 +14,21 @@ pub(super) mod judge;
 pub(super) mod legality;
 mod transit;
 
+use std::ops::Range;
+
+use rayon::prelude::*;
+
 use crate::robot::{Configuration, FaceConnection, Goal};
 use crate::statics::Bracket;
 
 use super::action::Action;
-use super::assembly::{Assembler, Touched};
+use super::assembly::Touched;
 use super::plan::{IfStronger, Moment, Plan, PlannedAction};
 use super::refusal::{Refusal, check};
 pub use failure::{Failure, Fault};
 use judge::Found;
 use legality::{Transition, transition};
-use transit::Checker;
+use transit::{Checker, Scene};
 
 /// What a replay found.
 #[derive(Clone, Debug, PartialEq)]
@@ -107,43 +111,91 @@ fn run(
     stronger: Option<(FaceConnection, f64)>,
 ) -> Result<Replay, Refusal> {
     check(start, goal)?;
-    let assembler = Assembler::new(start);
-    let mut checker = Checker::new(start, &assembler, required, stronger);
+    let scene = Scene::new(start, required, stronger);
+    let mut checker = Checker::new(&scene);
     let mut state = start.clone();
     state.connections.sort_unstable();
 
     let at_start = checker.rest(None, &state, None)?;
-    let mut found = vec![at_start];
-    let mut legal = true;
-    let movers = neighbouring_movers(plan);
+    // Where actions lead is quickly told. So blocks of them can be looked at independently, each from its first state.
+    let mut blocks: Vec<Block> = Vec::new();
+    let mut illegal = None;
     for (index, planned) in plan.actions.iter().enumerate() {
-        let claim = planned.margin.filter(|_| stronger.is_none());
-        let bound = claim.and_then(|claim| claims::bound(&claim, planned.action.is_move()));
         match transition(&state, &planned.action) {
             Err(fault) => {
-                checker.judge.fail(Some(index), None, fault, None);
-                legal = false;
+                illegal = Some((index, fault));
                 break;
             }
             Ok(next) => {
-                let bottleneck = plan.bottleneck.as_ref().filter(|b| b.action == Some(index)).map(|b| b.phase);
-                let claimed: Vec<f64> = planned.phase.into_iter().chain(bottleneck).collect();
-                let by = Hint { claimed: &claimed, bound, hanging: movers[index] };
-                found.push(take(&mut checker, index, &state, &next, &by)?);
+                if index % BLOCK == 0 {
+                    blocks.push(Block { from: state, actions: index..index });
+                }
+                blocks.last_mut().expect("the first action begins a block").actions.end = index + 1;
                 state = next.after;
             }
         }
     }
+    let movers = neighbouring_movers(plan);
+    let of_block = |block: &Block| {
+        let mut checker = Checker::new(&scene);
+        let found = check_block(&mut checker, block, plan, stronger.is_none(), &movers)?;
+        Ok((found, checker))
+    };
+    let checked: Vec<(Vec<Found<FaceConnection>>, Checker)> =
+        blocks.par_iter().map(of_block).collect::<Result<_, Refusal>>()?;
+    let mut found = vec![at_start];
+    for (of_block, by) in checked {
+        found.extend(of_block);
+        checker.join(by);
+    }
+    let is_legal = illegal.is_none();
+    if let Some((index, fault)) = illegal {
+        checker.judge.fail(Some(index), None, fault, None);
+    }
     let actions_replayed = found.len() - 1;
     let moves = plan.actions.iter().filter(|planned| planned.action.is_move()).count();
     claims::check(&mut checker.judge, plan, moves, &found);
-    if legal && let Some(fault) = arrival::missing(start, &state, goal) {
+    if is_legal && let Some(fault) = arrival::missing(start, &state, goal) {
         checker.judge.fail(None, None, fault, None);
     }
     let margin = found.iter().map(|f| f.margin).reduce(Bracket::min).expect("the start was checked");
     let states = judge::states(&found);
-    let oracle_solves = checker.judge.solves + checker.bounds.solves();
+    let oracle_solves = checker.solves();
     Ok(Replay { margin, states, actions_replayed, oracle_solves, failures: checker.judge.failures })
+}
+
+/// Actions that are looked at one after the other, with what was found for those before. Fewer would know less, more
+/// would leave threads idle at the end.
+const BLOCK: usize = 256;
+
+/// Legal actions from a state on.
+struct Block {
+    from: Configuration,
+    actions: Range<usize>,
+}
+
+/// Checks the actions of a block; `with_claims` says whether by what the plan claims of them.
+fn check_block(
+    checker: &mut Checker,
+    block: &Block,
+    plan: &Plan,
+    with_claims: bool,
+    movers: &[[Option<usize>; 2]],
+) -> Result<Vec<Found<FaceConnection>>, Refusal> {
+    let mut state = block.from.clone();
+    let mut found = Vec::with_capacity(block.actions.len());
+    for index in block.actions.clone() {
+        let planned = &plan.actions[index];
+        let next = transition(&state, &planned.action).expect("all actions of a block are legal");
+        let claim = planned.margin.filter(|_| with_claims);
+        let bound = claim.and_then(|claim| claims::bound(&claim, planned.action.is_move()));
+        let bottleneck = plan.bottleneck.as_ref().filter(|b| b.action == Some(index)).map(|b| b.phase);
+        let claimed: Vec<f64> = planned.phase.into_iter().chain(bottleneck).collect();
+        let by = Hint { claimed: &claimed, bound, hanging: movers[index] };
+        found.push(take(checker, index, &state, &next, &by)?);
+        state = next.after;
+    }
+    Ok(found)
 }
 
 /// What a plan says about an action that tells where and how tightly to look. Wrong hints cost time only.

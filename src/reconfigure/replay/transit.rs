@@ -16,28 +16,49 @@ use super::failure::Fault;
 use super::judge::{Found, Judge, Sample, phases};
 use super::legality::Path;
 
-/// Checks states and collects what is wrong.
-pub(super) struct Checker<'a> {
-    assembler: &'a Assembler<'a>,
+/// What a plan is replayed in: everything that no action changes.
+pub(super) struct Scene<'a> {
+    start: &'a Configuration,
+    assembler: Assembler<'a>,
     surroundings: Surroundings,
     off_limits: Surroundings,
-    pub bounds: Bounds<'a>,
+    /// The margin that every transient state must have.
+    required: f64,
     /// A connection that is taken to be so many times as strong as it is.
     stronger: Option<(FaceConnection, f64)>,
+}
+
+impl<'a> Scene<'a> {
+    pub fn new(start: &'a Configuration, required: f64, stronger: Option<(FaceConnection, f64)>) -> Self {
+        let assembler = Assembler::new(start);
+        let surroundings = Surroundings::new(&start.environment);
+        let off_limits = Surroundings::new(&start.require.off_limits());
+        Self { start, assembler, surroundings, off_limits, required, stronger }
+    }
+}
+
+/// Checks states and collects what is wrong.
+pub(super) struct Checker<'a> {
+    scene: &'a Scene<'a>,
+    bounds: Bounds<'a>,
     pub judge: Judge<FaceConnection, Touched>,
 }
 
 impl<'a> Checker<'a> {
-    pub fn new(
-        start: &'a Configuration,
-        assembler: &'a Assembler<'a>,
-        required: f64,
-        stronger: Option<(FaceConnection, f64)>,
-    ) -> Self {
-        let surroundings = Surroundings::new(&start.environment);
-        let off_limits = Surroundings::new(&start.require.off_limits());
-        let judge = Judge::new(required, start.require.connected);
-        Self { assembler, surroundings, off_limits, bounds: Bounds::new(start), stronger, judge }
+    pub fn new(scene: &'a Scene<'a>) -> Self {
+        let judge = Judge::new(scene.required, scene.start.require.connected);
+        Self { scene, bounds: Bounds::new(scene.start), judge }
+    }
+
+    /// Structures assessed so far.
+    pub fn solves(&self) -> u64 {
+        self.judge.solves + self.bounds.solves()
+    }
+
+    /// Adds what another one found wrong, and what that took.
+    pub fn join(&mut self, other: Self) {
+        self.judge.solves += other.solves();
+        self.judge.failures.extend(other.judge.failures);
     }
 
     /// Checks a state at rest: whether it has a margin, by bounds with one of two modules hanging on the others, where
@@ -93,13 +114,15 @@ impl<'a> Checker<'a> {
         let others = (0..before.modules.len()).filter(|&m| m != path.module);
         let modules = others
             .filter_map(|m| first_collision(&moving, &path.motion, &solid(m)).map(|phase| (phase, Touched::Module(m))));
-        let around = self.surroundings.first_collision(&moving, &path.motion);
+        let around = self.scene.surroundings.first_collision(&moving, &path.motion);
         let around = around.map(|(phase, what)| (phase, what.into()));
         let first = modules.chain(around).min_by(|(a, _), (b, _)| a.total_cmp(b));
         if let Some((phase, with)) = first {
             self.judge.fail(Some(action), Some(phase), Fault::Collision { with }, None);
         }
-        if let Some((phase, Surrounding::Obstacle(region))) = self.off_limits.first_collision(&moving, &path.motion) {
+        if let Some((phase, Surrounding::Obstacle(region))) =
+            self.scene.off_limits.first_collision(&moving, &path.motion)
+        {
             self.judge.fail(Some(action), Some(phase), Fault::KeepOut { region }, None);
         }
     }
@@ -110,8 +133,8 @@ impl<'a> Checker<'a> {
         state: &Transient,
         phase: f64,
     ) -> Result<Sample<FaceConnection>, Refusal> {
-        let mut assembly = self.assembler.assemble(state);
-        if let Some((held, factor)) = self.stronger {
+        let mut assembly = self.scene.assembler.assemble(state);
+        if let Some((held, factor)) = self.scene.stronger {
             let is_it = |index: usize| ports(modules, &state.engaged[assembly.connections[index]]) == held;
             strengthen(&mut assembly.structure, factor, is_it);
         }

@@ -1,0 +1,67 @@
+//! How much work attempts are worth, so that planning ends by itself and the same way on any machine.
+//!
+//! Knows counts of work; does not know what is done.
+
+/// Work that an attempt may take before there is a plan, for every module that is not in place: at a larger margin than is
+/// required, and at the required one.
+const EFFORT: [u64; 2] = [300, 3000];
+
+/// Work that one further attempt may take, and all of them together, in terms of that which led to the first plan.
+const FURTHER: [u64; 2] = [2, 4];
+
+/// Work that is left for attempts.
+pub struct Effort {
+    /// Modules that are not in place at the start, at least one.
+    away: u64,
+    /// Work that led to the first plan, and all that was done since.
+    first: Option<u64>,
+    further: u64,
+}
+
+impl Effort {
+    /// For so many modules that are not in place.
+    pub fn new(away: usize) -> Self {
+        Self { away: (away as u64).max(1), first: None, further: 0 }
+    }
+
+    /// Work that the next attempt may take; `None` where none is worth it any more. `is_required` says that it is for the
+    /// margin that is required, below which there is nothing to try.
+    pub fn limit(&self, is_required: bool) -> Option<u64> {
+        let Some(first) = self.first else { return Some(self.away * EFFORT[usize::from(is_required)]) };
+        let [one, all] = FURTHER.map(|times| times * first);
+        // Less than what led to the first plan leads to no other.
+        let left = all.saturating_sub(self.further);
+        (left >= first).then_some(one.min(left))
+    }
+
+    /// Takes note of an attempt.
+    pub fn note(&mut self, work: u64, led_to_a_plan: bool) {
+        match self.first {
+            Some(_) => self.further += work,
+            None if led_to_a_plan => self.first = Some(work.max(1)),
+            None => {}
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn attempts_after_the_first_plan_end() {
+        let mut effort = Effort::new(10);
+        let before = effort.limit(false).unwrap();
+        assert!(effort.limit(true).unwrap() > before);
+        effort.note(before, false);
+        assert_eq!(effort.limit(false), Some(before), "as long as there is no plan, all margins are worth the same");
+        effort.note(100, true);
+        let mut further = 0;
+        while let Some(limit) = effort.limit(false) {
+            assert!((100..=200).contains(&limit));
+            effort.note(limit, false);
+            further += limit;
+        }
+        assert!(further <= 400);
+    }
+}
