@@ -115,6 +115,44 @@ fn take_out_of(loads: &mut Vec<ModuleLoad>, require: &mut Requirement, out: usiz
     require.stay.iter_mut().for_each(|module| *module = moved_up(*module, out));
 }
 
+/// What is written alike for both kinds of robot, since their fields have the same names.
+macro_rules! by_its_fields {
+    () => {
+        fn ids(&self) -> Vec<&str> {
+            self.modules.iter().map(|module| module.id.as_str()).collect()
+        }
+
+        fn catalogue(&self) -> &Arc<Catalogue> {
+            &self.catalogue
+        }
+
+        fn catalogue_mut(&mut self) -> &mut Arc<Catalogue> {
+            &mut self.catalogue
+        }
+
+        fn type_mut(&mut self, module: usize) -> &mut usize {
+            &mut self.modules[module].module_type
+        }
+
+        fn require_mut(&mut self) -> &mut Requirement {
+            &mut self.require
+        }
+
+        fn take_out(&mut self, module: usize) {
+            self.modules.remove(module);
+            self.connections.retain(|connection| !connection.modules().contains(&module));
+            for port in self.connections.iter_mut().flat_map(|connection| &mut connection.ports) {
+                port.module = moved_up(port.module, module);
+            }
+            take_out_of(&mut self.loads, &mut self.require, module);
+        }
+
+        fn is_connected(&self) -> bool {
+            Self::is_connected(self)
+        }
+    };
+}
+
 impl Robot for Configuration {
     type Action = Action;
     type Connection = FaceConnection;
@@ -129,38 +167,7 @@ impl Robot for Configuration {
         (0..expected.modules.len()).filter(|module| !is_there(module)).collect()
     }
 
-    fn ids(&self) -> Vec<&str> {
-        self.modules.iter().map(|module| module.id.as_str()).collect()
-    }
-
-    fn catalogue(&self) -> &Arc<Catalogue> {
-        &self.catalogue
-    }
-
-    fn catalogue_mut(&mut self) -> &mut Arc<Catalogue> {
-        &mut self.catalogue
-    }
-
-    fn type_mut(&mut self, module: usize) -> &mut usize {
-        &mut self.modules[module].module_type
-    }
-
-    fn require_mut(&mut self) -> &mut Requirement {
-        &mut self.require
-    }
-
-    fn take_out(&mut self, module: usize) {
-        self.modules.remove(module);
-        self.connections.retain(|connection| !connection.modules().contains(&module));
-        for port in self.connections.iter_mut().flat_map(|connection| &mut connection.ports) {
-            port.module = moved_up(port.module, module);
-        }
-        take_out_of(&mut self.loads, &mut self.require, module);
-    }
-
-    fn is_connected(&self) -> bool {
-        Self::is_connected(self)
-    }
+    by_its_fields!();
 
     fn solve(problem: &Problem<Self>, options: &Options, on_event: &mut dyn FnMut(&Event)) -> Result<Report, Refusal> {
         super::solve_lattice(problem, options, on_event)
@@ -201,38 +208,7 @@ impl Robot for Linkage {
         (0..expected.modules.len()).filter(|module| !is_there(module)).collect()
     }
 
-    fn ids(&self) -> Vec<&str> {
-        self.modules.iter().map(|module| module.id.as_str()).collect()
-    }
-
-    fn catalogue(&self) -> &Arc<Catalogue> {
-        &self.catalogue
-    }
-
-    fn catalogue_mut(&mut self) -> &mut Arc<Catalogue> {
-        &mut self.catalogue
-    }
-
-    fn type_mut(&mut self, module: usize) -> &mut usize {
-        &mut self.modules[module].module_type
-    }
-
-    fn require_mut(&mut self) -> &mut Requirement {
-        &mut self.require
-    }
-
-    fn take_out(&mut self, module: usize) {
-        self.modules.remove(module);
-        self.connections.retain(|connection| !connection.modules().contains(&module));
-        for port in self.connections.iter_mut().flat_map(|connection| &mut connection.ports) {
-            port.module = moved_up(port.module, module);
-        }
-        take_out_of(&mut self.loads, &mut self.require, module);
-    }
-
-    fn is_connected(&self) -> bool {
-        Self::is_connected(self)
-    }
+    by_its_fields!();
 
     fn solve(
         problem: &Problem<Self>,

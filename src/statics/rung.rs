@@ -47,14 +47,17 @@ pub struct Tally {
 impl Tally {
     /// Counts one answer.
     pub fn count(&mut self, answer: &Assessment) {
-        self.counts[answer.decided_by as usize] += 1;
+        self.add(answer.decided_by, 1);
+    }
+
+    /// Counts so many answers of one rung.
+    pub fn add(&mut self, rung: Rung, times: u64) {
+        self.counts[rung as usize] += times;
     }
 
     /// Adds what was counted elsewhere, e.g. by another thread.
     pub fn merge(&mut self, other: &Self) {
-        for (count, more) in self.counts.iter_mut().zip(other.counts) {
-            *count += more;
-        }
+        Rung::ALL.into_iter().for_each(|rung| self.add(rung, other.of(rung)));
     }
 
     /// Answers of one rung.

@@ -17,5 +17,5 @@ mod tests;
 pub use job::{Case, Job, Limits, Planner, Suite};
 pub use judge::{Check, Flaw, judge};
 pub use plan::AnyPlan;
-pub use record::{Ending, Found, Point, Record, Tally};
+pub use record::{Ending, Found, Point, Record};
 pub use run::{Run, Watch, run};

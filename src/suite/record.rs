@@ -50,9 +50,6 @@ pub struct Found {
     pub optimal: bool,
 }
 
-/// How the oracle's calls were decided: names of ways, and how often each.
-pub type Tally = Vec<(String, u64)>;
-
 /// All that a job found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Record {
@@ -74,8 +71,6 @@ pub struct Record {
     pub moves_at_least: u32,
     /// What the search took.
     pub statistics: Statistics,
-    /// How the oracle's calls were decided; empty where that is not counted.
-    pub rungs: Tally,
     /// Peak memory of the job's process in bytes, where the system tells.
     pub peak_bytes: Option<u64>,
 }

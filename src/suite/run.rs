@@ -9,11 +9,9 @@ use crate::reconfigure::{
     Event, Limit, Method, News, Options, Outcome, Plan, Proof, Reduction, Refusal, Report, Statistics, linkage, solve,
 };
 
-use crate::statics::{self, Rung};
-
 use super::job::{Job, Planner};
 use super::plan::AnyPlan;
-use super::record::{Ending, Found, Point, Record, Tally};
+use super::record::{Ending, Found, Point, Record};
 
 /// What a job answered.
 #[derive(Clone, Debug, PartialEq)]
@@ -157,22 +155,8 @@ fn base<A, C>(job: &Job, report: &Report<A, C>) -> Record {
         margin_at_most: report.proof.margin_at_most,
         moves_at_least: report.proof.moves_at_least,
         statistics: report.statistics,
-        rungs: rungs(&report.statistics.decided_by),
         peak_bytes: None,
     }
-}
-
-/// How often each rung of the oracle's ladder answered, of those that did.
-fn rungs(tally: &statics::Tally) -> Tally {
-    let name = |rung| match rung {
-        Rung::ClosedForm => "closed form",
-        Rung::CarriedOver => "carried over",
-        Rung::StoppedEarly => "stopped early",
-        Rung::Solved => "solved",
-        Rung::SolvedGenerally => "solved generally",
-    };
-    let counts = Rung::ALL.into_iter().map(|rung| (name(rung).to_string(), tally.of(rung)));
-    counts.filter(|(_, times)| *times > 0).collect()
 }
 
 fn refused(job: &Job, why: String) -> Record {
@@ -192,7 +176,6 @@ impl Record {
             margin_at_most: last.map_or(f64::INFINITY, |point| point.margin_at_most),
             moves_at_least: last.map_or(0, |point| point.moves_at_least),
             statistics: Statistics::default(),
-            rungs: Vec::new(),
             peak_bytes: None,
             trace,
         }

@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 
 use crate::generate::Family;
 use crate::reconfigure::Limit;
+use crate::statics::Tally;
 
 use super::job::{Job, Planner, objective_name};
 use super::record::{Ending, Record};
@@ -65,7 +66,7 @@ pub struct Row {
     /// Median of the structures that the oracle assessed.
     pub oracle_solves: f64,
     /// How oracle calls were decided, in all jobs together.
-    pub rungs: BTreeMap<String, u64>,
+    pub decided_by: Tally,
     /// Largest peak memory of a job's process in bytes, where known.
     pub peak_bytes: Option<u64>,
 }
@@ -151,10 +152,8 @@ fn row(modules: usize, group: &[Entry<'_>]) -> Row {
     }
     let generated: u64 = records().map(|record| record.statistics.generated).sum();
     let by_bounds: u64 = records().map(|record| record.statistics.decided_by_bounds()).sum();
-    let mut rungs = BTreeMap::new();
-    for (name, times) in records().flat_map(|record| &record.rungs) {
-        *rungs.entry(name.clone()).or_insert(0) += times;
-    }
+    let mut decided_by = Tally::default();
+    records().for_each(|record| decided_by.merge(&record.statistics.decided_by));
     Row {
         modules,
         jobs: group.len(),
@@ -171,7 +170,7 @@ fn row(modules: usize, group: &[Entry<'_>]) -> Row {
         generated: median(&|record| record.statistics.generated as f64).unwrap_or(0.0),
         by_bounds: (generated > 0).then(|| by_bounds as f64 / generated as f64),
         oracle_solves: median(&|record| record.statistics.oracle_solves as f64).unwrap_or(0.0),
-        rungs,
+        decided_by,
         peak_bytes: records().filter_map(|record| record.peak_bytes).max(),
     }
 }

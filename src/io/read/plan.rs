@@ -13,7 +13,7 @@ use super::linkage_plan::LinkagePlans;
 use super::outcome::{limit, outcome};
 use super::sequence::{Family, Parts, sequence};
 use crate::reconfigure::{Objective, Outcome, Proof, Report, Statistics};
-use crate::statics::Tally;
+use crate::statics::{Rung, Tally};
 
 /// Reads a plan for whatever robot it is.
 pub(super) fn read(root: &Place<'_>, findings: &mut Findings) -> Option<Verifiable> {
@@ -104,6 +104,16 @@ fn proof<C>(wire: &wire::Proof, outcome: &Outcome<C>) -> Proof {
     }
 }
 
+fn tally(wire: wire::Answers) -> Tally {
+    let mut tally = Tally::default();
+    tally.add(Rung::ClosedForm, wire.closed_form);
+    tally.add(Rung::CarriedOver, wire.carried_over);
+    tally.add(Rung::StoppedEarly, wire.stopped_early);
+    tally.add(Rung::Solved, wire.solved);
+    tally.add(Rung::SolvedGenerally, wire.solved_generally);
+    tally
+}
+
 pub(super) fn statistics(wire: &wire::Statistics, place: &Place<'_>, findings: &mut Findings) -> Statistics {
     let certified = wire.certified.unwrap_or_default();
     let statistics = Statistics {
@@ -112,7 +122,7 @@ pub(super) fn statistics(wire: &wire::Statistics, place: &Place<'_>, findings: &
         generated: wire.generated.unwrap_or_else(|| certified.saturating_add(wire.decided_by_bounds)),
         certified,
         oracle_solves: wire.oracle_solves,
-        decided_by: Tally::default(),
+        decided_by: wire.answers.map(tally).unwrap_or_default(),
         oracle_seconds: 0.0,
         bytes: wire.memory_bytes.unwrap_or_default(),
         seconds: wire.seconds.0,

@@ -94,7 +94,6 @@ fn record(place: &Place<'_>, findings: &mut Findings) -> Option<Record> {
         margin_at_most: wire.margin_at_most.0.unwrap_or(f64::INFINITY),
         moves_at_least: wire.moves_at_least.unwrap_or(u32::MAX),
         statistics,
-        rungs: wire.rungs.into_iter().collect(),
         peak_bytes: wire.peak_memory_bytes,
     })
 }

@@ -47,7 +47,7 @@ pub(super) use number::{AngleRange, Bound, Limit, NonNegative, Positive, Real, r
 pub(super) use outcome::{Impossible, Outcome, StoppedBy, Which};
 pub(super) use partial_order::{CheckedMoments, OrderedAction, PartialOrder, PartialOrderFormat, Wait};
 pub(super) use plan::{
-    Alternative, Bottleneck, Bracket, IfStronger, Moment, Objective, Plan, PlanFormat, Proof, Statistics,
+    Alternative, Answers, Bottleneck, Bracket, IfStronger, Moment, Objective, Plan, PlanFormat, Proof, Statistics,
 };
 pub(super) use result::{Asked, FoundPlan, JobEnding, JobResult, PlanFlaw, ReplayOf, ResultFormat, TracePoint};
 pub(super) use rofi::{

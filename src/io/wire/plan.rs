@@ -176,6 +176,22 @@ pub(crate) struct IfStronger {
     pub(crate) margin: Bracket,
 }
 
+/// How many of the oracle's answers took how much, from the cheapest kind to the dearest.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Answers {
+    /// Balance alone: nothing was optimised.
+    pub(crate) closed_form: u64,
+    /// What a neighbouring state left.
+    pub(crate) carried_over: u64,
+    /// The iteration, stopped as soon as its bounds answered.
+    pub(crate) stopped_early: u64,
+    /// The iteration to its end.
+    pub(crate) solved: u64,
+    /// The general solver, after the iteration had not been enough.
+    pub(crate) solved_generally: u64,
+}
+
 /// What a search did.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -195,6 +211,9 @@ pub(crate) struct Statistics {
     pub(crate) oracle_solves: u64,
     /// Transitions that no margin was asked for.
     pub(crate) decided_by_bounds: u64,
+    /// How many of the oracle's answers took how much; null when not counted.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) answers: Option<Answers>,
     /// Peak memory of the search, approximately; null when not counted.
     #[serde(default)]
     pub(crate) memory_bytes: Option<u64>,

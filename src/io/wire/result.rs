@@ -1,6 +1,5 @@
 //! `result/1`: what a job of a suite found, one line of a file each.
 
-use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -49,9 +48,6 @@ pub(crate) struct JobResult {
     pub(crate) trace: Vec<TracePoint>,
     /// What the search did.
     pub(crate) statistics: Statistics,
-    /// How often the oracle decided in which way; empty where that is not counted.
-    #[serde(default)]
-    pub(crate) rungs: IndexMap<String, u64>,
     /// Peak memory of the job's process; null where the system does not tell.
     pub(crate) peak_memory_bytes: Option<u64>,
 }

@@ -8,6 +8,7 @@ use super::linkage_plan::LinkagePlans;
 use super::sequence::{Family, sequence};
 use super::{Unwritable, configuration, linkage, outcome};
 use crate::reconfigure::{Objective, Outcome, Proof, Report, Statistics};
+use crate::statics::{Rung, Tally};
 
 /// A plan for lattice modules.
 pub(super) fn wire(document: &PlanDocument) -> Result<wire::Plan, Unwritable> {
@@ -87,6 +88,16 @@ fn proof(proof: &Proof) -> wire::Proof {
     }
 }
 
+fn answers(tally: &Tally) -> wire::Answers {
+    wire::Answers {
+        closed_form: tally.of(Rung::ClosedForm),
+        carried_over: tally.of(Rung::CarriedOver),
+        stopped_early: tally.of(Rung::StoppedEarly),
+        solved: tally.of(Rung::Solved),
+        solved_generally: tally.of(Rung::SolvedGenerally),
+    }
+}
+
 pub(super) fn statistics(statistics: &Statistics) -> wire::Statistics {
     wire::Statistics {
         expanded: statistics.expanded,
@@ -95,6 +106,7 @@ pub(super) fn statistics(statistics: &Statistics) -> wire::Statistics {
         certified: Some(statistics.certified),
         oracle_solves: statistics.oracle_solves,
         decided_by_bounds: statistics.decided_by_bounds(),
+        answers: (statistics.decided_by.total() > 0).then(|| answers(&statistics.decided_by)),
         memory_bytes: Some(statistics.bytes),
         seconds: NonNegative(statistics.seconds),
     }

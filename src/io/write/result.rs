@@ -37,7 +37,6 @@ pub(super) fn wire(job: &Job, record: &Record) -> wire::JobResult {
         moves_at_least: at_least(record.moves_at_least),
         trace: record.trace.iter().map(point).collect(),
         statistics: statistics(&record.statistics),
-        rungs: record.rungs.iter().cloned().collect(),
         peak_memory_bytes: record.peak_bytes,
     }
 }

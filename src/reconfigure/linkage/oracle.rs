@@ -9,7 +9,7 @@ use crate::geometry::Motion;
 use crate::reconfigure::worst::{self, Instant, Sampling, Worst};
 use crate::robot::linkage::Connection;
 use crate::spatial::{Pose, Vec3};
-use crate::statics::{Bracket, InvalidStructure, Question, assess};
+use crate::statics::{Bracket, InvalidStructure, Question, Tally, assess};
 
 use super::assembly::{Assembler, Held, Transient};
 use super::moves::{Step, View};
@@ -29,6 +29,7 @@ pub struct Oracle<'a> {
     /// The first joint of the robot.
     first_joint: Option<Held>,
     solves: AtomicU64,
+    tally: Mutex<Tally>,
     fault: Mutex<Option<Vec<InvalidStructure>>>,
 }
 
@@ -42,6 +43,7 @@ impl<'a> Oracle<'a> {
             is_unloaded: start.gravity == Vec3::zeros() && start.loads.is_empty(),
             first_joint: first_joint.map(|module| Held::Joint { module, joint: 0 }),
             solves: AtomicU64::new(0),
+            tally: Mutex::new(Tally::default()),
             fault: Mutex::new(None),
         }
     }
@@ -49,6 +51,11 @@ impl<'a> Oracle<'a> {
     /// Structures assessed so far.
     pub fn solves(&self) -> u64 {
         self.solves.load(Ordering::Relaxed)
+    }
+
+    /// How they were decided.
+    pub fn tally(&self) -> Tally {
+        *self.tally.lock().expect("no thread panics while it counts")
     }
 
     /// What the oracle found wrong with a structure, if it ever did. The margin of such a state counts as unknown.
@@ -109,6 +116,7 @@ impl<'a> Oracle<'a> {
         let assembly = self.assembler.assemble(&Transient { bodies, engaged });
         match assess(&assembly.structure, Question::VALUE) {
             Ok(assessment) => {
+                self.tally.lock().expect("no thread panics while it counts").count(&assessment);
                 let weakest = assessment.weakest_connection().map(|index| assembly.connections[index]);
                 Worst { margin: assessment.margin(), instant, weakest }
             }

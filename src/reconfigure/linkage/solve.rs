@@ -71,6 +71,7 @@ pub fn solve(
         return Err(Refusal::Structure(fault));
     }
     report.statistics.oracle_solves = domain.oracle.solves();
+    report.statistics.decided_by = domain.oracle.tally();
     report.statistics.seconds = began.elapsed().as_secs_f64();
     Ok(report)
 }

@@ -4,6 +4,7 @@ use std::fmt::Write;
 use std::io;
 use std::path::Path;
 
+use steadfast::statics::Rung;
 use steadfast::suite::Suite;
 use steadfast::suite::summary::{self, Against, Curve, Entry, Naive, Row, Way};
 
@@ -268,7 +269,15 @@ Medians, but for the share decided by bounds: transitions whose margin was never
 ";
 
 fn oracle(way: &Way, row: &Row) -> String {
-    let rungs: Vec<String> = row.rungs.iter().map(|(name, times)| format!("{name} {times}")).collect();
+    let rung = |rung| match rung {
+        Rung::ClosedForm => "closed form",
+        Rung::CarriedOver => "carried over",
+        Rung::StoppedEarly => "stopped early",
+        Rung::Solved => "solved",
+        Rung::SolvedGenerally => "solved generally",
+    };
+    let answered = Rung::ALL.into_iter().filter(|&which| row.decided_by.of(which) > 0);
+    let rungs: Vec<String> = answered.map(|which| format!("{} {}", rung(which), row.decided_by.of(which))).collect();
     format!(
         "| {} | {} | {:.0} | {:.0} | {} | {:.0} | {} | {} |\n",
         title(way),
