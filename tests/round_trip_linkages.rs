@@ -15,8 +15,8 @@ use steadfast::io::{
 use steadfast::reconfigure::linkage::assembly::Held;
 use steadfast::reconfigure::linkage::{Action, Half};
 use steadfast::reconfigure::{
-    Bottleneck, IfStronger, Impossible, InTheWay, Limit, Moment, Objective, Outcome, Plan, PlannedAction, Proof,
-    Report, Statistics, Which,
+    Bottleneck, IfStronger, Impossible, InTheWay, Limit, Moment, Nearest, Objective, Outcome, Plan, PlannedAction,
+    Proof, Report, Statistics, Which,
 };
 use steadfast::robot::linkage::{Code, Connection, Goal, Linkage, Module, Port, Spot};
 use steadfast::robot::{
@@ -206,7 +206,7 @@ prop_compose! {
             plan: (!labelled).then(|| plan(&start, &[], margin)),
             too_weak: start.connections.iter().map(|&held| (Held::Ports(held), Bracket::new(-2.0, -1.0))).collect(),
             never_move: labelled.then(|| (0..start.modules.len()).rev().collect()),
-            nearest: None,
+            nearest: Some(Nearest { modules: 7, in_place: 4, stuck: 2 }),
             cut_by: labelled.then_some(Limit::Memory),
         });
         let weakest = start.connections.first().map(|&connection| Held::Ports(connection));

@@ -5,8 +5,12 @@ use super::super::findings::{Findings, Place};
 use super::super::wire;
 use super::outcome::limit;
 use super::sequence::{Family, Held, Parts, bracket, sequence};
-use crate::reconfigure::{InTheWay, Which};
+use crate::reconfigure::{InTheWay, Nearest, Which};
 use crate::statics::Bracket;
+
+fn nearest(wire: wire::Nearest) -> Nearest {
+    Nearest { modules: wire.modules as usize, in_place: wire.in_place as usize, stuck: wire.stuck as usize }
+}
 
 /// What a file says; `ids` are those of the start's modules.
 pub(super) fn in_the_way<F: Family>(
@@ -51,7 +55,7 @@ pub(super) fn in_the_way<F: Family>(
         plan: plan.flatten(),
         too_weak,
         never_move: wire.never_move.is_some().then_some(never_move),
-        nearest: None,
+        nearest: wire.nearest.map(nearest),
         cut_by: wire.cut_by.map(limit),
     })
 }

@@ -28,9 +28,24 @@ pub(crate) struct InTheWay {
     /// Modules that cannot move with the required margin, whatever others do; null when not all states were seen.
     #[serde(default)]
     pub(crate) never_move: Option<Vec<String>>,
+    /// How close a decomposition came to the goal with the required margin; left out by other searches.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) nearest: Option<Nearest>,
     /// What ended this search before it was done; else null.
     #[serde(default)]
     pub(crate) cut_by: Option<StoppedBy>,
+}
+
+/// The state at a dead end with the fewest modules missing.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Nearest {
+    /// Modules of the robot.
+    pub(crate) modules: u32,
+    /// Those that were where the goal wants one of their kind.
+    pub(crate) in_place: u32,
+    /// Of the others, those that could not leave their cells at all. The rest found no way to a cell that could be filled.
+    pub(crate) stuck: u32,
 }
 
 /// A connection or joint that would have to be stronger.

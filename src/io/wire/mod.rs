@@ -40,7 +40,7 @@ pub(super) use configuration::{
 pub(super) use connector::Connector;
 pub(super) use errors::{Errors, ErrorsFormat, FileError};
 pub(super) use gives_way::{ContactMotion, GivesWay, MovingContact};
-pub(super) use in_the_way::{InTheWay, TooWeak};
+pub(super) use in_the_way::{InTheWay, Nearest, TooWeak};
 pub(super) use load_range::{Failure, LoadRange, LoadRangeFormat, RangeEnd, RangeOutcome};
 pub(super) use motion::{Edge, Stencil};
 pub(super) use number::{AngleRange, Bound, Limit, NonNegative, Positive, Real, reals};

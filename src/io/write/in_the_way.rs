@@ -4,8 +4,13 @@ use super::super::wire;
 use super::outcome::limit;
 use super::sequence::{Family, sequence};
 use super::{Unwritable, bracket};
-use crate::reconfigure::{InTheWay, Which};
+use crate::reconfigure::{InTheWay, Nearest, Which};
 use crate::statics::Bracket;
+
+fn nearest(found: Nearest) -> wire::Nearest {
+    let count = |modules| u32::try_from(modules).unwrap_or(u32::MAX);
+    wire::Nearest { modules: count(found.modules), in_place: count(found.in_place), stuck: count(found.stuck) }
+}
 
 /// What was found; `ids` are those of the start's modules.
 pub(super) fn in_the_way<F: Family>(
@@ -29,6 +34,7 @@ pub(super) fn in_the_way<F: Family>(
         plan: found.plan.as_ref().map(|plan| sequence(family, 0, plan)).transpose()?,
         too_weak,
         never_move: never_move.transpose()?,
+        nearest: found.nearest.map(nearest),
         cut_by: found.cut_by.map(limit),
     })
 }
