@@ -129,7 +129,7 @@ impl<R: Robot> Problem<R> {
     /// [`partial_order`](mod@crate::reconfigure::partial_order).
     ///
     /// # Errors
-    /// [`OrderError`](crate::reconfigure::partial_order::OrderError) for a plan that does not hold in its own order.
+    /// [`OrderError`] for a plan that does not hold in its own order.
     pub fn partial_order(&self, plan: &PlanOf<R>, options: &OrderOptions) -> Result<OrderOf<R>, BrokenOf<R>> {
         self.start.partial_order(plan, options)
     }
