@@ -64,7 +64,7 @@ pub struct Held {
 }
 
 impl Held {
-    /// The margin of a move's samples, those of [`Oracle::of_move`], where the module's own hold decides it; `bonds` are the
+    /// The margin of a move's samples, taken and refined as in [`Oracle::of_move`] but by the module's own hold, where that decides it; `bonds` are the
     /// connections before it. `is_along` says whether the module may touch ground or obstacles on its way.
     pub fn margin(
         &mut self,
