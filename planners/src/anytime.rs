@@ -251,7 +251,11 @@ where
         shortest: Shortest<'_, D>,
         on_path: &mut dyn FnMut(&Path<S, A>),
     ) -> Attempt {
-        search.known = Known { width: Some(self.found.width.lower), width_at_most: self.at_most };
+        search.known = Known {
+            width: Some(self.found.width.lower),
+            width_at_most: self.at_most,
+            cost_at_least: self.proof.cost_at_least,
+        };
         let (outcome, is_paused) = search.sharing(share, |search| shortest(search, floor));
         search.known = Known::default();
         self.at_most = self.at_most.min(match &outcome {

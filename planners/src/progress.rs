@@ -38,6 +38,8 @@ pub(crate) struct Monitor<'a> {
     report_every: u64,
     on_progress: Option<&'a mut dyn FnMut(&Progress)>,
     decisions: u64,
+    /// Reports claim no more of costs: what is searched is only a part of the paths that they are about.
+    cost_claimed: u32,
     pub progress: Progress,
 }
 
@@ -51,15 +53,17 @@ impl<'a> Monitor<'a> {
             best_cost: None,
             cost_at_least: 0,
         };
-        Monitor { budget, report_every, on_progress: None, decisions: 0, progress }
+        Monitor { budget, report_every, on_progress: None, decisions: 0, cost_claimed: u32::MAX, progress }
     }
 
     pub fn on_progress(&mut self, callback: &'a mut dyn FnMut(&Progress)) {
         self.on_progress = Some(callback);
     }
 
-    /// Forgets what earlier searches found, not what they spent.
-    pub fn begin(&mut self, width_at_most: f64, cost_at_least: u32) {
+    /// Forgets what earlier searches found, not what they spent. Whatever this one finds of costs, its reports claim no
+    /// more than `cost_claimed`.
+    pub fn begin(&mut self, width_at_most: f64, cost_at_least: u32, cost_claimed: u32) {
+        self.cost_claimed = cost_claimed;
         let (pass, statistics) = (self.progress.pass, self.progress.statistics);
         self.progress = Progress { pass, statistics, best_width: None, width_at_most, best_cost: None, cost_at_least };
     }
@@ -81,7 +85,8 @@ impl<'a> Monitor<'a> {
 
     pub fn report(&mut self) {
         if let Some(callback) = &mut self.on_progress {
-            callback(&self.progress);
+            let cost_at_least = self.progress.cost_at_least.min(self.cost_claimed);
+            callback(&Progress { cost_at_least, ..self.progress });
         }
     }
 }

@@ -54,7 +54,7 @@ pub struct Search<'a, S: Space> {
     pub(crate) pause_at: u64,
     /// Whether the last search did so.
     pub(crate) is_paused: bool,
-    /// What progress reports say of widths from the beginning.
+    /// What progress reports say from the beginning.
     pub(crate) known: Known,
     /// Width of the widest path found so far.
     pub(crate) widest: Option<f64>,
@@ -62,18 +62,20 @@ pub struct Search<'a, S: Space> {
     pub(crate) classes: Classes,
 }
 
-/// What is known of widths before a search begins.
+/// What is known before a search begins.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Known {
     /// That of the path in hand.
     pub width: Option<f64>,
     /// No path is wider.
     pub width_at_most: f64,
+    /// No path that is as wide as the one in hand costs less; without one, any number.
+    pub cost_at_least: u32,
 }
 
 impl Default for Known {
     fn default() -> Self {
-        Known { width: None, width_at_most: f64::INFINITY }
+        Known { width: None, width_at_most: f64::INFINITY, cost_at_least: u32::MAX }
     }
 }
 
@@ -163,8 +165,8 @@ impl<'a, S: Space> Search<'a, S> {
 
     /// Starts the books of a new question.
     pub(crate) fn begin(&mut self) {
-        let Known { width, width_at_most } = self.known;
-        self.monitor.begin(self.graph.cap().min(width_at_most), self.graph.remaining(START));
+        let Known { width, width_at_most, cost_at_least } = self.known;
+        self.monitor.begin(self.graph.cap().min(width_at_most), self.graph.remaining(START), cost_at_least);
         self.monitor.progress.best_width = width;
     }
 

@@ -115,10 +115,9 @@ fn what_has_a_direction_takes_turns_away_but_no_displacements() {
     // Points of a patch that a quarter turn leaves where they are, but no mirror.
     let mut twisted = free;
     let catalogue = std::sync::Arc::make_mut(&mut twisted.catalogue);
-    for connector in &mut catalogue.connectors {
-        let points = [[0.04, 0.01], [-0.01, 0.04], [-0.04, -0.01], [0.01, -0.04]].to_vec();
-        connector.model = Model::Patch { friction: 0.5, points };
-    }
+    let (face, pitch) = (catalogue.module_types[0].cell().face, catalogue.module_types[0].cell().pitch);
+    let points = [[0.4, 0.1], [-0.1, 0.4], [-0.4, -0.1], [0.1, -0.4]].map(|point| point.map(|c| c * pitch)).to_vec();
+    catalogue.connectors[face].model = Model::Patch { friction: 0.5, points };
     let symmetry = symmetry(&twisted).unwrap();
     let hand = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 0, 1]];
     let other = hand.map(|[x, y, z]| [y, x, z]);
