@@ -60,6 +60,8 @@ pub(crate) struct ShortestRun {
     pub limit: Option<Limit>,
     /// No path wide enough costs less, whether certification could tell or not.
     pub cost_at_least: u32,
+    /// The least estimate of a way that was left for costing too much; `u32::MAX` if none was.
+    pub beyond: u32,
 }
 
 impl<S: Space> Search<'_, S> {
@@ -112,14 +114,14 @@ impl<S: Space> Search<'_, S> {
         self.tree.clear();
         self.tree.settle(task.from, Additive(task.spent), None);
         if self.graph.is_goal(task.from) {
-            return ShortestRun { best: Some(Vec::new()), limit: None, cost_at_least: task.spent };
+            return ShortestRun { best: Some(Vec::new()), limit: None, cost_at_least: task.spent, beyond: u32::MAX };
         }
         let mut open = Queue::new();
-        let mut cost_at_least = 0;
+        let (mut cost_at_least, mut beyond) = (0, u32::MAX);
         // The least estimate at which an interval too wide to decide cut a path off.
         let mut undecided = task.below;
         if self.graph.remaining(task.from) != DEAD_END {
-            self.open_successors(task, task.from, &mut open);
+            beyond = self.open_successors(task, task.from, &mut open);
         }
 
         while let Some(head) = open.pop() {
@@ -136,7 +138,7 @@ impl<S: Space> Search<'_, S> {
                 self.monitor.progress.cost_at_least = cost_at_least;
             }
             if let Some(limit) = self.tick(open.bytes() + self.tree.bytes() + task.held_bytes) {
-                return ShortestRun { best: None, limit: Some(limit), cost_at_least };
+                return ShortestRun { best: None, limit: Some(limit), cost_at_least, beyond };
             }
             let width = self.graph.decide(End::Start, arrow, task.floor);
             if !is_wide_enough(width.lower, task.floor) {
@@ -148,33 +150,37 @@ impl<S: Space> Search<'_, S> {
             self.tree.settle(to, Additive(cost), Some(arrow));
             if self.graph.is_goal(to) {
                 let limit = (cost_at_least < cost).then_some(Limit::Precision);
-                return ShortestRun { best: Some(self.tree.way_to(to)), limit, cost_at_least };
+                return ShortestRun { best: Some(self.tree.way_to(to)), limit, cost_at_least, beyond };
             }
-            self.open_successors(task, to, &mut open);
+            beyond = beyond.min(self.open_successors(task, to, &mut open));
         }
         let limit = (undecided < task.below).then_some(Limit::Precision);
-        ShortestRun { best: None, limit, cost_at_least: cost_at_least.max(undecided) }
+        ShortestRun { best: None, limit, cost_at_least: cost_at_least.max(undecided), beyond }
     }
 
-    /// Opens all ways on from a state whose label has improved.
-    fn open_successors(&mut self, task: &Task<'_>, from: StateId, open: &mut Queue<Priority, Way>) {
+    /// Opens all ways on from a state whose label has improved. Returns the least estimate of those that cost too much.
+    fn open_successors(&mut self, task: &Task<'_>, from: StateId, open: &mut Queue<Priority, Way>) -> u32 {
         self.monitor.progress.statistics.expanded += 1;
         self.graph.expand(from);
         let value = self.tree.value(from).expect("expanded states are settled");
+        let mut beyond = u32::MAX;
         for (index, edge) in self.graph.successors(from).iter().enumerate() {
             let (arrow, to) = (Arrow { from, index: index as u32 }, edge.to);
             let cost = value.then(Additive(edge.cost));
             let remaining = self.graph.remaining(to);
             let estimate = cost.then(Additive(remaining.saturating_mul(task.greed)));
-            let is_open = cost.then(Additive(remaining)) > Additive(task.below)
-                && remaining != DEAD_END
+            let least = cost.then(Additive(remaining));
+            let is_open = remaining != DEAD_END
                 && is_wide_enough(edge.width.upper, task.floor)
                 && self.tree.value(to).is_none_or(|best| cost > best)
                 && !task.avoid.contains(&to)
                 && !task.forbid.contains(&arrow);
-            if is_open {
-                open.push((estimate, cost.0), Way { arrow, to });
+            match is_open {
+                true if least.0 < task.below => open.push((estimate, cost.0), Way { arrow, to }),
+                true => beyond = beyond.min(least.0),
+                false => {}
             }
         }
+        beyond
     }
 }

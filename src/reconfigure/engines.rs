@@ -199,6 +199,9 @@ impl Task<'_> {
                     answer.found.push(path.clone());
                 }
             }
+            if !is_by_margin {
+                answer.found.sort_by(|a, b| a.cost.cmp(&b.cost).then(b.width.lower.total_cmp(&a.width.lower)));
+            }
             answer.cut_by = further.limit().filter(|_| answer.found.len() < self.options.plans);
         }
         answer

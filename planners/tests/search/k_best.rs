@@ -66,6 +66,23 @@ fn orders_are_not_gone_through_one_by_one() {
     assert!(search.statistics().expanded < 20_000, "{}", search.statistics().expanded);
 }
 
+/// Once the first plan is known, nothing but a corridor leads on from its middle. In earnest such a corridor may have no end.
+#[test]
+fn parts_without_a_plan_are_not_gone_through() {
+    let (length, goal) = (10_000, 3);
+    let mut graph = planners::toy::Toy::new(length, 0, &[goal]);
+    graph = graph.arc(0, 1, 0, 1, 1.0).arc(1, goal, 0, 1, 1.0).arc(0, 2, 1, 1, 1.0).arc(2, goal, 1, 4, 1.0);
+    graph = graph.arc(1, 4, 2, 1, 1.0);
+    for node in 4..length - 1 {
+        graph = graph.arc(node, node + 1, 2, 1, 1.0);
+    }
+    let mut search = Search::new(&graph, options());
+    let outcome = search.k_best(2, 0.5, <[u8]>::to_vec);
+    let costs: Vec<u32> = outcome.solved().unwrap().iter().map(|path| path.cost).collect();
+    assert_eq!(costs, [2, 5]);
+    assert!(search.statistics().expanded < 50, "{}", search.statistics().expanded);
+}
+
 /// Costs of the cheapest plan of each kind, ascending.
 fn least_costs<K: Ord>(plans: &[Plan], key: impl Fn(&Plan) -> K) -> Vec<u32> {
     let mut least = BTreeMap::new();
