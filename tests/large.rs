@@ -4,10 +4,11 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use steadfast::generate::{Family, Pair, Request, generate};
+use steadfast::io::{SourceFile, no_references, read_problem};
 use steadfast::reconfigure::replay::replay;
-use steadfast::reconfigure::{Event, Limit, Method, Options, Outcome, Plan, Report, solve};
+use steadfast::reconfigure::{Event, Limit, Method, Nearest, Options, Outcome, Plan, Report, solve};
 use steadfast::robot::{
-    Catalogue, Cell, Configuration, Environment, Goal, Ground, Matching, Module, Placement, Requirement,
+    Catalogue, Cell, Configuration, Environment, Goal, Ground, Matching, Module, ModuleLoad, Placement, Requirement,
 };
 use steadfast::spatial::Vec3;
 
@@ -95,6 +96,78 @@ fn a_robot_walks_to_where_it_is_wanted() {
     let (start, goal) = (cubes(&row(0)), goal(&row(6)));
     let report = decompose(&start, &goal, Options::default());
     verified(&start, &goal, &report);
+}
+
+/// Two modules that only their names tell apart are in each other's cells.
+#[test]
+fn named_modules_change_places() {
+    let cells: Vec<Cell> = (0..6).map(|i| [i % 3, i / 3, 0]).collect();
+    let mut swapped = cells.clone();
+    swapped.swap(0, 5);
+    let start = cubes(&cells);
+    let mut goal = goal(&swapped);
+    goal.matching.labelled = true;
+    let report = decompose(&start, &goal, Options::default());
+    let plan = verified(&start, &goal, &report);
+    assert!(plan.moves >= 2);
+}
+
+/// The heavy module is wanted at the other end.
+#[test]
+fn modules_of_two_types_go_where_theirs_is_wanted() {
+    let mut catalogue = Catalogue::cube();
+    let mut heavy = catalogue.module_types[0].clone();
+    heavy.name = "heavy".to_string();
+    heavy.bodies[0].mass *= 2.0;
+    let kind = catalogue.module_types.len();
+    catalogue.module_types.push(heavy);
+    let catalogue = Arc::new(catalogue);
+    let robot = |cells: &[Cell], heavy: usize| {
+        let mut robot = cubes(cells);
+        robot.catalogue = Arc::clone(&catalogue);
+        robot.modules[heavy].module_type = kind;
+        robot
+    };
+    let cells: Vec<Cell> = (0..8).map(|i| [i % 4, 0, i / 4]).collect();
+    let start = robot(&cells, 0);
+    let goal = Goal { configuration: robot(&cells, 3), matching: Matching::default() };
+    let report = decompose(&start, &goal, Options::default());
+    verified(&start, &goal, &report);
+}
+
+/// A module with a load of its own stays where it is, and where the goal wants it elsewhere the report says what it lacks.
+#[test]
+fn a_loaded_module_stays_where_it_is() {
+    let loaded = |module: usize| {
+        let mut start = cubes(&[[0, 0, 0], [1, 0, 0], [2, 0, 0], [0, 0, 1]]);
+        start.loads = vec![ModuleLoad { module, force: Vec3::new(0.0, 0.0, -0.5), torque: Vec3::zeros(), at: None }];
+        start
+    };
+    let options = Options { explain: true, ..Options::default() };
+    let goal = goal(&[[0, 0, 0], [1, 0, 0], [2, 0, 0], [2, 0, 1]]);
+    let report = decompose(&loaded(1), &goal, options.clone());
+    verified(&loaded(1), &goal, &report);
+    let report = decompose(&loaded(3), &goal, options);
+    assert_eq!((report.outcome, report.plan), (Outcome::OutOfBudget(Limit::Incomplete), None));
+    let nearest = report.in_the_way.unwrap().nearest;
+    assert_eq!(nearest, Some(Nearest { modules: 4, in_place: 3, stuck: 1 }));
+}
+
+/// The problems of the library that are too large for exact search.
+#[test]
+fn library_problems_are_solved_as_well_as_expected() {
+    for (name, case) in problems::manifest().unwrap().large {
+        let directory = problems::root().join("large").join(&name);
+        let file = |which: &str| SourceFile::new(which, std::fs::read(directory.join(which)).unwrap());
+        let problem = read_problem(&file("start.json"), &file("goal.json"), &no_references).unwrap();
+        let problem = problem.into_lattice().unwrap();
+        assert_eq!(problem.start.modules.len(), case.modules, "{name}");
+        let options =
+            Options { min_margin: Some(case.margin_at_least), max_expansions: Some(200), ..Options::default() };
+        let report = solve(&problem.start, &problem.goal, &options, &mut |_: &Event| {}).unwrap();
+        let plan = verified(&problem.start, &problem.goal, &report);
+        assert!(plan.margin.unwrap().lower >= case.margin_at_least, "{name}: {:?}", plan.margin);
+    }
 }
 
 #[test]

@@ -20,6 +20,8 @@ pub struct Manifest {
     pub rofi: IndexMap<String, PlanningCase>,
     /// Planning problems of struts and nodes by name: `freesn/NAME/start.json` and `goal.json`.
     pub freesn: IndexMap<String, PlanningCase>,
+    /// Planning problems of many cubes, beyond exact search, by name: `large/NAME/start.json` and `goal.json`.
+    pub large: IndexMap<String, LargeCase>,
     /// Configurations of the published experiments with struts and nodes by name: `freesn/experiments/NAME.json`.
     pub experiments: IndexMap<String, StructureCase>,
 }
@@ -40,6 +42,20 @@ pub struct PlanningCase {
     pub by_geometry: Option<ByGeometry>,
     /// How many plans with the fewest moves there are at least.
     pub plans: Option<usize>,
+}
+
+/// The expected answer to a planning problem of so many modules that no best plan is known.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LargeCase {
+    /// Why the problem is in the library.
+    pub why: String,
+    /// How many modules the robot has.
+    pub modules: usize,
+    /// There is a plan with at least this margin.
+    pub margin_at_least: f64,
+    /// Where that comes from.
+    pub source: String,
 }
 
 /// The expected answer to the question for the fewest moves.
@@ -147,9 +163,9 @@ mod tests {
 
     #[test]
     fn every_planning_problem_has_an_expected_answer_and_the_other_way_round() {
-        let Manifest { cubes, rofi, .. } = manifest().unwrap();
-        for (family, cases) in [("cubes", cubes), ("rofi", rofi)] {
-            let mut expected: Vec<_> = cases.into_keys().collect();
+        let Manifest { cubes, rofi, large, .. } = manifest().unwrap();
+        let names = [cubes.into_keys().collect(), rofi.into_keys().collect(), large.into_keys().collect()];
+        for (family, mut expected) in ["cubes", "rofi", "large"].into_iter().zip::<[Vec<String>; 3]>(names) {
             expected.sort();
             let entries = std::fs::read_dir(root().join(family)).unwrap();
             let mut present: Vec<_> = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();

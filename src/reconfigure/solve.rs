@@ -13,7 +13,7 @@ use super::baseline::{Baseline, Blind, Eager};
 use super::compose::{compose, expand, ports};
 use super::domain::{Domain, width};
 use super::engines::{Task, Translation};
-use super::large::{self, EXACT_MODULES, decompose};
+use super::large::{self, decompose, exact_modules};
 use super::open_ground::OpenGround;
 use super::options::{Event, Method, Options, Reduction};
 use super::oracle::Worst;
@@ -143,7 +143,7 @@ fn is_for_decomposition(problem: &Problem, options: &Options) -> bool {
         Method::Decompose => true,
         Method::Auto => {
             let movable = problem.start().modules.iter().filter(|module| !module.fixed).count();
-            movable > EXACT_MODULES && options.reduction == Reduction::Saturated && options.plans <= 1
+            movable > exact_modules(options) && options.reduction == Reduction::Saturated && options.plans <= 1
         }
     }
 }

@@ -198,8 +198,8 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Carries one module on: to where one is wanted if that can be; else out of the way of others; else
-    /// closer to where modules are wanted.
+    /// Carries one module on: to where one is wanted if that can be; else out of the way of others, or out of a cell
+    /// that wants another kind; else closer to where modules are wanted.
     fn carry_one(&mut self, left: &[Placed], ways: &mut Ways<'a>, rests: &mut Rests<'a>, watch: &mut Watch) -> bool {
         let vacant = vacant(&self.layout, self.targets);
         self.open = open(&self.layout, &vacant.keys().copied().collect());
@@ -218,6 +218,12 @@ impl<'a> Builder<'a> {
             (nearest.get(&placed.cell).copied().unwrap_or(u32::MAX), lot(self.seed, placed.cell))
         });
         if covers.iter().any(|&cover| self.carry(cover, &to_fill, ways, rests, watch)) {
+            return true;
+        }
+        let strangers = movers.iter().filter(|mover| self.targets.contains_key(&mover.cell));
+        let strangers: Vec<Placed> = strangers.copied().collect();
+        let aside = if strangers.is_empty() { BTreeMap::new() } else { self.aside() };
+        if strangers.iter().any(|&stranger| self.carry(stranger, &aside, ways, rests, watch)) {
             return true;
         }
         let closer = self.closer(&vacant);
@@ -247,9 +253,21 @@ impl<'a> Builder<'a> {
 
     /// All cells around by how close they are to the empty cells of the goal.
     fn closer(&self, vacant: &BTreeMap<Cell, u16>) -> BTreeMap<Cell, Rank> {
+        self.by_steps(vacant.keys().copied())
+    }
+
+    /// All cells around that the goal leaves empty, by how close they are to it: for modules in the cells of others.
+    fn aside(&self) -> BTreeMap<Cell, Rank> {
+        let mut cells = self.by_steps(self.targets.keys().copied());
+        cells.retain(|cell, _| !self.targets.contains_key(cell));
+        cells
+    }
+
+    /// All cells around by how close they are to some.
+    fn by_steps(&self, cells: impl Iterator<Item = Cell>) -> BTreeMap<Cell, Rank> {
         let [low, high] = self.bounds;
         let within = |cell: Cell| (0..3).all(|i| low[i] <= cell[i] && cell[i] <= high[i]);
-        let steps = distances(vacant.keys().copied(), within);
+        let steps = distances(cells, within);
         steps.into_iter().map(|(cell, steps)| (cell, (Reverse(0), steps, cell[2], lot(self.seed, cell)))).collect()
     }
 

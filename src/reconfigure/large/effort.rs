@@ -4,7 +4,7 @@
 
 /// Work that an attempt may take before there is a plan, for every module that is not in place: at a larger margin than is
 /// required, and at the required one.
-const EFFORT: [u64; 2] = [300, 3000];
+const EFFORT: [u64; 2] = [150, 1500];
 
 /// Work that one further attempt may take, and all of them together, in terms of that which led to the first plan.
 const FURTHER: [u64; 2] = [2, 4];

@@ -40,8 +40,20 @@ use script::write;
 use shape::Targets;
 pub use ways::{Ways, shift};
 
+/// Most modules for which all is searched unless asked otherwise, where the margin counts first. On random pairs of 8 cubes
+/// the exact search proved one of five margins in ten seconds; of 12 and 16 it found plans by then whose margins were
+/// below those that the decomposition found in one (0.06 against 0.50, 0.47 against 0.52, 0.02 against 0.58).
+const EXACT_FOR_MARGIN: usize = 8;
+
+/// The same where moves count: of pairs of 12 that differ in four, the exact search proved three of four in a second. A
+/// decomposition does not look for short plans.
+const EXACT_FOR_MOVES: usize = 12;
+
 /// Most modules for which all is searched unless asked otherwise.
-pub const EXACT_MODULES: usize = 12;
+pub fn exact_modules(options: &Options) -> usize {
+    let by_margin = options.objective == Objective::Margin && !options.ignore_stability;
+    if by_margin { EXACT_FOR_MARGIN } else { EXACT_FOR_MOVES }
+}
 
 /// Attempts at the required margin, each with another seed. At larger ones there is one.
 const ATTEMPTS: u64 = 3;
