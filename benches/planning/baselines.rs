@@ -17,10 +17,10 @@ const LAZY: f64 = 20.0;
 const GUIDED: f64 = 10.0;
 
 /// The planner's processor time for a problem. What it does not solve by then has no ratios.
-const LIMIT: Duration = Duration::from_secs(15);
+const LIMIT: Duration = Duration::from_secs(10);
 
 /// Eager evaluation is given up after so many times the oracle time of the planner, and this long more.
-const EAGER_PATIENCE: f64 = 40.0;
+const EAGER_PATIENCE: f64 = 30.0;
 const EAGER_START: Duration = Duration::from_millis(300);
 
 /// The blind search is given up after so many times the expansions of the planner, or after [`LIMIT`].
