@@ -362,7 +362,7 @@ impl<'a> Builder<'a> {
             .map(|(&cell, &reach)| (occupancy.at(cell).expect("what holds a module is there"), reach))
             .collect();
         match rests.utilisations(others, &supports, 1.0 - self.floor) {
-            Ok(most) => Ok(1.0 - most.into_iter().fold(0.0, f64::max)),
+            Ok(most) => Ok((1.0 - most.into_iter().fold(0.0, f64::max)).max(self.floor)),
             Err(place) => Err(*reaches.keys().nth(place).expect("one of the supports")),
         }
     }

@@ -9,6 +9,10 @@ const EFFORT: [u64; 2] = [150, 1500];
 /// Work that one further attempt may take, and all of them together, in terms of that which led to the first plan.
 const FURTHER: [u64; 2] = [2, 4];
 
+/// Work that any attempt may take, and all after the first plan together, however small the robot is and however soon it came:
+/// seconds for dozens of modules.
+const LEAST: [u64; 2] = [10_000, 30_000];
+
 /// Work that is left for attempts.
 pub struct Effort {
     /// Modules that are not in place at the start, at least one.
@@ -27,8 +31,8 @@ impl Effort {
     /// Work that the next attempt may take; `None` where none is worth it any more. `is_required` says that it is for the
     /// margin that is required, below which there is nothing to try.
     pub fn limit(&self, is_required: bool) -> Option<u64> {
-        let Some(first) = self.first else { return Some(self.away * EFFORT[usize::from(is_required)]) };
-        let [one, all] = FURTHER.map(|times| times * first);
+        let Some(first) = self.first else { return Some(LEAST[0] + self.away * EFFORT[usize::from(is_required)]) };
+        let [one, all] = [0, 1].map(|which| LEAST[which].max(FURTHER[which] * first));
         // Less than what led to the first plan leads to no other.
         let left = all.saturating_sub(self.further);
         (left >= first).then_some(one.min(left))
@@ -55,13 +59,13 @@ mod tests {
         assert!(effort.limit(true).unwrap() > before);
         effort.note(before, false);
         assert_eq!(effort.limit(false), Some(before), "as long as there is no plan, all margins are worth the same");
-        effort.note(100, true);
+        effort.note(20_000, true);
         let mut further = 0;
         while let Some(limit) = effort.limit(false) {
-            assert!((100..=200).contains(&limit));
+            assert!((20_000..=40_000).contains(&limit));
             effort.note(limit, false);
             further += limit;
         }
-        assert!(further <= 400);
+        assert!(further <= 80_000);
     }
 }

@@ -108,7 +108,8 @@ impl<'a> Bounds<'a> {
             let most = grip.utilisation.upper.max(carried[&grip.support]);
             Sample {
                 phase,
-                margin: Bracket::new(1.0 - most, 1.0),
+                // At most `level` is at least `least`, but for the rounding of differences from 1.
+                margin: Bracket::new((1.0 - most).max(least), 1.0),
                 limiting: Vec::new(),
                 weakest: None,
                 connected: true,

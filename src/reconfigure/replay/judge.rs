@@ -91,14 +91,15 @@ impl<C: Copy, T> Judge<C, T> {
         Found::at_rest(sample)
     }
 
+    /// The margin that every state of a move must have.
+    pub fn required_on_the_way(&self) -> f64 {
+        if self.required > 0.0 { (self.required - claims::tolerance(self.required)).max(0.0) } else { self.required }
+    }
+
     /// Books the states of a move.
     pub fn transit(&mut self, action: usize, samples: Vec<Sample<C>>) -> Found<C> {
         self.solves += samples.len() as u64;
-        let least = if self.required > 0.0 {
-            (self.required - claims::tolerance(self.required)).max(0.0)
-        } else {
-            self.required
-        };
+        let least = self.required_on_the_way();
         self.book(Some(action), Some(()), &samples.iter().collect::<Vec<_>>(), least);
         Found::on_the_way(samples)
     }

@@ -69,8 +69,10 @@ impl<'a> Checker<'a> {
         state: &Configuration,
         bounded: Option<(f64, [Option<usize>; 2])>,
     ) -> Result<Found<FaceConnection>, Refusal> {
+        // A claim may be for the move before, of which less is asked.
         if let Some((least, hanging)) = bounded
-            && let Some(sample) = self.bounds.at_rest(state, hanging.into_iter().flatten(), least)
+            && let Some(sample) =
+                self.bounds.at_rest(state, hanging.into_iter().flatten(), least.max(self.judge.required))
         {
             return Ok(self.judge.rest(action, sample));
         }
@@ -93,7 +95,8 @@ impl<'a> Checker<'a> {
     ) -> Result<Found<FaceConnection>, Refusal> {
         self.collide(action, before, path);
         let phases = phases(path.steps, claimed);
-        if let Some(samples) = bound.and_then(|least| self.bounds.of_move(before, path, &phases, least)) {
+        let least = bound.map(|least| least.max(self.judge.required_on_the_way()));
+        if let Some(samples) = least.and_then(|least| self.bounds.of_move(before, path, &phases, least)) {
             return Ok(self.judge.transit(action, samples));
         }
         let placements: Vec<Placement> = before.modules.iter().map(|module| module.placement).collect();
