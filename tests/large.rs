@@ -162,8 +162,7 @@ fn library_problems_are_solved_as_well_as_expected() {
         let problem = read_problem(&file("start.json"), &file("goal.json"), &no_references).unwrap();
         let problem = problem.into_lattice().unwrap();
         assert_eq!(problem.start.modules.len(), case.modules, "{name}");
-        let options =
-            Options { min_margin: Some(case.margin_at_least), max_expansions: Some(200), ..Options::default() };
+        let options = Options { min_margin: Some(case.margin_at_least), ..Options::default() };
         let report = solve(&problem.start, &problem.goal, &options, &mut |_: &Event| {}).unwrap();
         let plan = verified(&problem.start, &problem.goal, &report);
         assert!(plan.margin.unwrap().lower >= case.margin_at_least, "{name}: {:?}", plan.margin);
