@@ -23,8 +23,9 @@ const LIMIT: Duration = Duration::from_secs(10);
 const EAGER_PATIENCE: f64 = 30.0;
 const EAGER_START: Duration = Duration::from_millis(300);
 
-/// The blind search is given up after so many times the expansions of the planner, or after [`LIMIT`].
+/// The blind search is given up after so many times the expansions of the planner, or after this long.
 const BLIND_PATIENCE: u64 = 15;
+const BLIND_LIMIT: Duration = Duration::from_secs(60);
 
 /// How often the processor time of a search is looked at.
 const LOOK: Duration = Duration::from_millis(2);
@@ -93,7 +94,7 @@ fn compare_one(problem: &Problem, ratios: &mut [Ratios; 2], record: &mut Record)
     let eager = run(problem, Options { baseline: Some(Baseline::Eager), ..options.clone() }, patience);
     let most = Some(expanded * BLIND_PATIENCE);
     let blind = Options { baseline: Some(Baseline::Blind), max_expansions: most, ..options };
-    let blind = run(problem, blind, LIMIT);
+    let blind = run(problem, blind, BLIND_LIMIT);
     let mut mark = [""; 2];
     for (mark, report) in mark.iter_mut().zip([&eager, &blind]) {
         match report.outcome {
