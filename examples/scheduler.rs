@@ -17,7 +17,7 @@ use steadfast::schedule::{Job, Problem, Robot, best, plan_batch, until, weaken_c
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut out = stdout().lock();
-    let directory = Path::new(env!("CARGO_MANIFEST_DIR")).join("problems/cubes/overhang");
+    let directory = Path::new(env!("CARGO_MANIFEST_DIR")).join("problems/cubes/arm_of_eight");
     let file = |name: &str| Ok::<_, std::io::Error>(SourceFile::new(name, std::fs::read(directory.join(name))?));
     let read = read_problem(&file("start.json")?, &file("goal.json")?, &no_references)?;
     let read = read.into_lattice().ok_or("cubes sit in a lattice")?;
