@@ -139,10 +139,9 @@ fn run(
     let of_block = |block: &Block| {
         let mut checker = Checker::new(&scene);
         let found = check_block(&mut checker, block, plan, stronger.is_none(), &movers)?;
-        Ok((found, checker))
+        Ok((found, checker.judged()))
     };
-    let checked: Vec<(Vec<Found<FaceConnection>>, Checker)> =
-        blocks.par_iter().map(of_block).collect::<Result<_, Refusal>>()?;
+    let checked: Vec<_> = blocks.par_iter().map(of_block).collect::<Result<_, Refusal>>()?;
     let mut found = vec![at_start];
     for (of_block, by) in checked {
         found.extend(of_block);

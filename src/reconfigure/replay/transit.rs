@@ -55,10 +55,15 @@ impl<'a> Checker<'a> {
         self.judge.solves + self.bounds.solves()
     }
 
+    /// What it found wrong, and what that took, without what it remembers of states.
+    pub fn judged(self) -> Judge<FaceConnection, Touched> {
+        Judge { solves: self.solves(), ..self.judge }
+    }
+
     /// Adds what another one found wrong, and what that took.
-    pub fn join(&mut self, other: Self) {
-        self.judge.solves += other.solves();
-        self.judge.failures.extend(other.judge.failures);
+    pub fn join(&mut self, other: Judge<FaceConnection, Touched>) {
+        self.judge.solves += other.solves;
+        self.judge.failures.extend(other.failures);
     }
 
     /// Checks a state at rest: whether it has a margin, by bounds with one of two modules hanging on the others, where
