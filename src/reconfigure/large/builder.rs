@@ -69,7 +69,7 @@ struct Before {
 }
 
 /// A robot on its way to where it is wanted.
-pub struct Builder<'a> {
+pub struct Builder<'a, 'l> {
     domain: &'a Domain<'a>,
     direction: Direction,
     targets: &'a Targets,
@@ -83,8 +83,8 @@ pub struct Builder<'a> {
     carries: Vec<Carry>,
     /// What was so before each carry.
     before: Vec<Before>,
-    /// What dead ends taught.
-    lessons: Lessons,
+    /// What dead ends taught on this way.
+    lessons: &'l mut Lessons,
     /// Empty cells of the goal that are open to the outside, and must stay so until they are filled.
     open: BTreeSet<Cell>,
     /// No layout is met twice.
@@ -97,9 +97,15 @@ pub struct Builder<'a> {
     is_stopped: bool,
 }
 
-impl<'a> Builder<'a> {
+impl<'a, 'l> Builder<'a, 'l> {
     /// Where a journey begins, to give up at dead end number `patience + 1`.
-    pub fn new(domain: &'a Domain<'a>, journey: &'a Journey, floor: f64, seed: u64, patience: usize) -> Self {
+    pub fn new(
+        domain: &'a Domain<'a>,
+        journey: &'a Journey,
+        lessons: &'l mut Lessons,
+        (floor, seed): (f64, u64),
+        patience: usize,
+    ) -> Self {
         let Journey { direction, layout, placements, targets } = journey;
         let cells = layout.placed().iter().map(|placed| placed.cell).chain(targets.keys().copied());
         Self {
@@ -112,7 +118,7 @@ impl<'a> Builder<'a> {
             placements: placements.clone(),
             carries: Vec::new(),
             before: Vec::new(),
-            lessons: Lessons::default(),
+            lessons,
             open: BTreeSet::new(),
             met: HashSet::from([layout.clone()]),
             patience,

@@ -41,6 +41,7 @@ use builder::{Attempt, Builder};
 use effort::Effort;
 use journey::{Direction, Journey};
 use levels::Levels;
+use order::Lessons;
 pub use script::Ends;
 use script::write;
 pub use ways::{Ways, shift};
@@ -123,6 +124,8 @@ pub fn decompose(
         let larger = [at_larger(direction)];
         let tries = if levels.is_required() { &AT_REQUIRED[..] } else { &larger };
         let mut is_attained = false;
+        // What one way found, the other one uses.
+        let mut lessons = Lessons::default();
         for (attempt, Try { direction: way, patience, effort: each }) in (0..).zip(tries.iter().copied()) {
             let Some(journey) = journeys.iter().find(|journey| journey.direction == way) else { continue };
             let seed = options.seed.wrapping_add(attempt);
@@ -141,7 +144,10 @@ pub fn decompose(
                 stopped = budget.exceeded(&planners::Statistics { expanded, bytes, ..planners::Statistics::default() });
                 stopped.is_none()
             };
-            let found = Builder::new(domain, journey, floor, seed, patience).run(&mut ways, &mut rests, &mut watch);
+            let mut own = lessons.seen(way);
+            let builder = Builder::new(domain, journey, &mut own, (floor, seed), patience);
+            let found = builder.run(&mut ways, &mut rests, &mut watch);
+            lessons = own.seen(way);
             effort.note(work, matches!(found, Attempt::Done(_)));
             match found {
                 Attempt::Done(carries) => {

@@ -8,6 +8,7 @@ use std::collections::BTreeMap;
 use crate::reconfigure::layout::{Layout, Placed};
 use crate::robot::Cell;
 
+use super::journey::Direction;
 use super::shape::{Targets, distances, lot, surplus, vacant};
 
 /// How early a cell is taken, smallest first: how often it was not left empty at a dead end, steps, height, and a lot.
@@ -23,6 +24,16 @@ pub struct Lessons {
 }
 
 impl Lessons {
+    /// Those of the way forwards as they are seen in some direction, or the other way round: backwards, the cells
+    /// to fill are those that are to be freed forwards.
+    #[must_use]
+    pub fn seen(self, direction: Direction) -> Self {
+        match direction {
+            Direction::Forwards => self,
+            Direction::Backwards => Self { empty: self.full, full: self.empty },
+        }
+    }
+
     /// Takes note of a dead end.
     pub fn note(&mut self, layout: &Layout, targets: &Targets) {
         for cell in vacant(layout, targets).into_keys() {

@@ -60,7 +60,8 @@ fn with_room_below_it_comes_up_and_goes_down() {
 #[test]
 fn no_sequence_of_moves_empties_the_ground_or_reaches_it() {
     for (from, has_foot) in [(FOOT, true), (NO_FOOT, false)] {
-        let start = on_a_block(&from);
+        // Two more, which can walk everywhere.
+        let start = on_a_block(&[from.as_slice(), &[[0, 0, 2], [1, 0, 2]]].concat());
         let problem = Problem::new(&start, &goal(start.clone())).unwrap();
         let domain = Domain::new(&problem, false);
         let mut seen: HashSet<Layout> = HashSet::from([problem.start_layout().clone()]);
