@@ -2,6 +2,8 @@
 
 mod checks;
 mod forces;
+#[cfg(target_os = "linux")]
+mod memory;
 mod planning;
 mod robots;
 mod streams;
