@@ -72,13 +72,13 @@ struct Try {
     effort: u64,
 }
 
-/// Attempts at the required margin, each with another seed: both ways in turn, with more and more patience.
-const AT_REQUIRED: [Try; 6] = {
+/// Attempts at the required margin, each with another seed: both ways in turn, then both with more patience.
+const AT_REQUIRED: [Try; 4] = {
     const fn attempt(direction: Direction, times: usize) -> Try {
         Try { direction, patience: 10 * times, effort: 400 * times as u64 }
     }
     let (on, back) = (Direction::Forwards, Direction::Backwards);
-    [attempt(on, 1), attempt(back, 1), attempt(on, 2), attempt(back, 2), attempt(on, 4), attempt(back, 4)]
+    [attempt(on, 1), attempt(back, 1), attempt(on, 3), attempt(back, 3)]
 };
 
 /// The only attempt at a larger margin, in some direction.
