@@ -145,7 +145,7 @@ fn is_for_decomposition(problem: &Problem, options: &Options) -> bool {
         Method::Decompose => true,
         Method::Auto => {
             let movable = problem.start().modules.iter().filter(|module| !module.fixed).count();
-            movable > exact_modules(options) && options.reduction == Reduction::Saturated && options.plans <= 1
+            movable > exact_modules(options) && options.reduction == Reduction::Saturated
         }
     }
 }

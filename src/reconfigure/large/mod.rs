@@ -8,6 +8,7 @@
 //! - `builder` chooses the module and its place, asks whether the others carry the walk
 //!   ([`hanging`](super::hanging)), uncovers what is buried, and undoes carries on dead ends;
 //! - `levels` says which margins to try for, and `effort` how much work each is worth;
+//! - `found` keeps the plans that are wanted;
 //! - `script` turns carries into a plan with what was proved of every action.
 //!
 //! Every transient state of the plan is proved to have the margin that the plan claims. Nothing is proved about
@@ -17,6 +18,7 @@ mod builder;
 #[cfg(test)]
 mod dead_end_tests;
 mod effort;
+mod found;
 mod journey;
 mod levels;
 mod order;
@@ -39,6 +41,7 @@ use super::plan::{Objective, Outcome, Plan, Proof, Report, Statistics};
 use crate::statics::Bracket;
 use builder::{Attempt, Builder};
 use effort::Effort;
+use found::Found;
 use journey::{Direction, Journey};
 use levels::Levels;
 use order::Lessons;
@@ -104,7 +107,8 @@ pub fn decompose(
     // Every module that is not where the goal wants one moves at least once. In a free frame others might stay.
     let fewest = if problem.goal().is_free() { 0 } else { u32::try_from(surplus).unwrap_or(u32::MAX) };
     let mut effort = Effort::new(surplus);
-    let mut plan: Option<Plan> = None;
+    let needs = |step| problem.needs(step);
+    let mut plans = Found::new(options, &needs);
     let mut nearest: Option<Nearest> = None;
     let mut stopped = None;
     let mut statistics = Statistics::default();
@@ -137,7 +141,7 @@ pub fn decompose(
                     return false;
                 }
                 statistics.expanded += 1;
-                on_event(&Event { news: News::Progress, known: known(plan.as_ref(), statistics.expanded) });
+                on_event(&Event { news: News::Progress, known: known(plans.best(), statistics.expanded) });
                 let bytes = options.measure_bytes.and_then(|measure| measure()).unwrap_or(0);
                 statistics.bytes = statistics.bytes.max(bytes as u64);
                 let expanded = statistics.expanded;
@@ -157,11 +161,11 @@ pub fn decompose(
                         levels.reopen();
                     }
                     let written = write(domain, &mut ways, &carries, &ends);
+                    let moves = carries.iter().flat_map(|carry| carry.path.iter().copied()).collect();
                     let is_enough = |margin: Bracket| required.is_none_or(|required| margin.lower >= required);
-                    if written.margin.is_none_or(is_enough) && is_better(&written, plan.as_ref(), options.objective) {
-                        let news = News::Plan(written.clone());
-                        plan = Some(written);
-                        on_event(&Event { news, known: known(plan.as_ref(), statistics.expanded) });
+                    if written.margin.is_none_or(is_enough) && plans.add(written.clone(), moves) {
+                        let news = News::Plan(written);
+                        on_event(&Event { news, known: known(plans.best(), statistics.expanded) });
                     }
                 }
                 // How close it came to the start says nothing of what is in the way.
@@ -180,31 +184,21 @@ pub fn decompose(
         }
     }
     statistics.oracle_solves = rests.solves();
-    let nearest = nearest.filter(|_| options.explain && plan.is_none());
+    let nearest = nearest.filter(|_| options.explain && plans.best().is_none());
     let in_the_way = nearest
         .map(|nearest| InTheWay::of_decomposition(nearest, ends.at_most(), required.unwrap_or(f64::NEG_INFINITY)));
+    let ended_by = stopped.unwrap_or(Limit::Incomplete);
+    let is_cut = plans.best().is_some() && !plans.is_enough();
+    let (plan, alternatives) = plans.into_plans();
     Report {
-        outcome: Outcome::OutOfBudget(stopped.unwrap_or(Limit::Incomplete)),
+        outcome: Outcome::OutOfBudget(ended_by),
         objective: options.objective,
         required,
         plan,
-        alternatives: Vec::new(),
-        alternatives_cut_by: None,
+        alternatives,
+        alternatives_cut_by: is_cut.then_some(ended_by),
         in_the_way,
         proof: Proof { optimal: false, margin_at_most: ends.at_most(), moves_at_least: fewest },
         statistics,
     }
-}
-
-/// Whether a plan is better than the best so far.
-fn is_better(plan: &Plan, best: Option<&Plan>, objective: Objective) -> bool {
-    let Some(best) = best else { return true };
-    let margin = |plan: &Plan| plan.margin.map_or(f64::INFINITY, |margin| margin.lower);
-    let by_margin = margin(plan).total_cmp(&margin(best));
-    let by_moves = best.moves.cmp(&plan.moves);
-    let order = match objective {
-        Objective::Moves => by_moves.then(by_margin),
-        _ => by_margin.then(by_moves),
-    };
-    order.is_gt()
 }
