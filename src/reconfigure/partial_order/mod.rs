@@ -31,6 +31,8 @@ mod meeting;
 mod precedence;
 mod product;
 #[cfg(test)]
+mod random_runs;
+#[cfg(test)]
 mod tests;
 mod timetable;
 

@@ -9,6 +9,7 @@ use crate::reconfigure::{Action, Objective, Options, Plan};
 use crate::robot::{Configuration, Goal, Placement};
 use crate::statics::{Question, assess};
 
+use super::random_runs::{Draw, Run, waits};
 use super::{Because, OrderError, OrderOptions, PartialOrder, partial_order};
 
 /// A row on the ground, the first cube held, with a cube on either end that moves one cell inwards.
@@ -36,25 +37,6 @@ fn ordered(start: &Configuration, plan: &Plan) -> PartialOrder {
 
 fn moves(plan: &Plan) -> Vec<usize> {
     (0..plan.actions.len()).filter(|&i| plan.actions[i].action.is_move()).collect()
-}
-
-/// Whether one action has to wait for another, directly or not.
-fn waits(order: &PartialOrder, action: usize, other: usize) -> bool {
-    order.waits_for(action).iter().any(|&before| before == other || waits(order, before, other))
-}
-
-/// Small numbers that look random.
-pub(super) struct Draw(pub(super) u64);
-
-impl Draw {
-    pub(super) fn below(&mut self, end: usize) -> usize {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 33) as usize % end
-    }
-
-    pub(super) fn share(&mut self) -> f64 {
-        self.below(1 << 20) as f64 / f64::from(1 << 20)
-    }
 }
 
 #[test]
@@ -188,42 +170,25 @@ fn every_moment_of_every_overlap_is_stable() {
         let order = ordered(&problem.0, &plan);
         for seed in 0..4 {
             let mut draw = Draw(seed);
-            // Actions take and wait as long as they please.
-            let mut spans: Vec<[f64; 2]> = Vec::new();
-            for action in 0..plan.actions.len() {
-                let ready = order.waits_for(action).iter().map(|&before| spans[before][1]).fold(0.0, f64::max);
-                let begin = ready + if draw.below(2) == 0 { 0.0 } else { draw.share() };
-                spans.push([begin, begin + 0.05 + draw.share()]);
-            }
-            let end = spans.iter().map(|span| span[1]).fold(0.0, f64::max);
-            for _ in 0..8 {
-                let now = draw.share() * end;
-                holds_at(&problem.0, &plan, &spans, now);
+            let run = Run::random(&order, plan.actions.len(), &mut draw);
+            for now in run.moments(&mut draw) {
+                holds_at(&problem.0, &plan, &run, now);
             }
         }
     }
 }
 
-/// Checks a run at one moment: releasing counts as done when it begins, engaging when it has ended.
-fn holds_at(start: &Configuration, plan: &Plan, spans: &[[f64; 2]], now: f64) {
-    let mut done: Vec<(f64, usize)> = Vec::new();
-    for (action, [begin, end]) in spans.iter().enumerate() {
-        let at = if matches!(plan.actions[action].action, Action::Detach(_)) { begin } else { end };
-        if *at <= now {
-            done.push((*at, action));
-        }
-    }
-    done.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+/// Checks a run at one moment.
+fn holds_at(start: &Configuration, plan: &Plan, run: &Run, now: f64) {
+    let action = |i: usize| &plan.actions[i].action;
     let mut state = start.clone();
-    for (_, action) in &done {
-        state = transition(&state, &plan.actions[*action].action).unwrap().after;
+    for done in run.done(now, |i| matches!(action(i), Action::Detach(_))) {
+        state = transition(&state, action(done)).unwrap().after;
     }
-    let under_way =
-        (0..spans.len()).filter(|&i| plan.actions[i].action.is_move() && spans[i][0] < now && now < spans[i][1]);
+    let under_way = run.under_way(now).filter(|&(i, _)| action(i).is_move());
     let paths: Vec<_> = under_way
-        .map(|i| {
-            let path = transition(&state, &plan.actions[i].action).unwrap().path.unwrap();
-            let phase = (now - spans[i][0]) / (spans[i][1] - spans[i][0]);
+        .map(|(i, phase)| {
+            let path = transition(&state, action(i)).unwrap().path.unwrap();
             let pose = path.motion.pose(&state.pose(path.module), phase);
             (path, pose)
         })

@@ -9,7 +9,7 @@ use crate::reconfigure::linkage::replay::legality::transition;
 use crate::reconfigure::linkage::replay::{after, replay};
 use crate::reconfigure::linkage::tests::{chain, goal, module, robot, solved, standing, string};
 use crate::reconfigure::linkage::{Action, Half};
-use crate::reconfigure::partial_order::tests::Draw;
+use crate::reconfigure::partial_order::random_runs::{Draw, Run, waits};
 use crate::reconfigure::partial_order::{Because, OrderError, OrderOptions, PartialOrder};
 use crate::reconfigure::{Objective, Options, Plan, PlannedAction};
 use crate::robot::linkage::{Code, Connection, Linkage, Port, Spot};
@@ -42,11 +42,6 @@ fn verified(start: &Linkage, plan: &LinkagePlan, required: f64) -> bool {
 
 fn order(start: &Linkage, plan: &LinkagePlan) -> PartialOrder<Touched> {
     partial_order(start, plan, &OrderOptions::default()).expect("the plan holds")
-}
-
-/// Whether one action has to wait for another, directly or not.
-fn waits(order: &PartialOrder<Touched>, action: usize, other: usize) -> bool {
-    order.waits_for(action).iter().any(|&before| before == other || waits(order, before, other))
 }
 
 /// Why an action waits for another directly.
@@ -294,49 +289,30 @@ fn every_moment_of_every_overlap_holds() {
         let order = order(&start, &plan);
         for seed in 0..4 {
             let mut draw = Draw(seed);
-            // Actions take and wait as long as they please.
-            let mut spans: Vec<[f64; 2]> = Vec::new();
-            for action in 0..plan.actions.len() {
-                let ready = order.waits_for(action).iter().map(|&before| spans[before][1]).fold(0.0, f64::max);
-                let begin = ready + if draw.below(2) == 0 { 0.0 } else { draw.share() };
-                spans.push([begin, begin + 0.05 + draw.share()]);
-            }
-            let end = spans.iter().map(|span| span[1]).fold(0.0, f64::max);
-            for _ in 0..8 {
-                let now = draw.share() * end;
-                holds_at(&start, &plan, &spans, now);
+            let run = Run::random(&order, plan.actions.len(), &mut draw);
+            for now in run.moments(&mut draw) {
+                holds_at(&start, &plan, &run, now);
             }
         }
     }
 }
 
-/// Checks a run at one moment: releasing counts as done when it begins, all else when it has ended.
-fn holds_at(start: &Linkage, plan: &LinkagePlan, spans: &[[f64; 2]], now: f64) {
-    let mut done: Vec<(f64, usize)> = Vec::new();
-    for (action, [begin, end]) in spans.iter().enumerate() {
-        let at = if matches!(plan.actions[action].action, Action::Detach(_)) { begin } else { end };
-        if *at <= now {
-            done.push((*at, action));
-        }
-    }
-    done.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+/// Checks a run at one moment.
+fn holds_at(start: &Linkage, plan: &LinkagePlan, run: &Run, now: f64) {
+    let action = |i: usize| &plan.actions[i].action;
     let mut state = start.clone();
     state.connections.sort_unstable();
-    for (_, action) in &done {
-        state = transition(&state, &plan.actions[*action].action).unwrap().after;
+    for done in run.done(now, |i| matches!(action(i), Action::Detach(_))) {
+        state = transition(&state, action(done)).unwrap().after;
     }
     // One after the other, each about its line where the ones before have taken that.
     let mut bodies: Vec<Vec<Pose>> = (0..state.modules.len()).map(|module| state.body_poses(module)).collect();
     let mut taken: Vec<Vec<Pose>> = bodies.iter().map(|of| vec![Pose::identity(); of.len()]).collect();
-    for (index, [begin, end]) in spans.iter().enumerate() {
-        let action = plan.actions[index].action;
-        if !action.is_move() || *begin >= now || now >= *end {
-            continue;
-        }
-        let path = transition(&state, &action).unwrap().path.unwrap();
-        let [module, body] = rests_on(&state, &action);
+    for (index, phase) in run.under_way(now).filter(|&(i, _)| action(i).is_move()) {
+        let path = transition(&state, action(index)).unwrap().path.unwrap();
+        let [module, body] = rests_on(&state, action(index));
         let frame = taken[module][body];
-        let by = frame * path.motion.at((now - begin) / (end - begin)) * frame.inverse();
+        let by = frame * path.motion.at(phase) * frame.inverse();
         for carried in &path.carried {
             let (pose, taken) = (&mut bodies[carried.module][carried.body], &mut taken[carried.module][carried.body]);
             (*pose, *taken) = (by * *pose, by * *taken);
@@ -352,7 +328,7 @@ fn holds_at(start: &Linkage, plan: &LinkagePlan, spans: &[[f64; 2]], now: f64) {
         for (other_m, other_b, other) in &solids[..index] {
             let joint = |j: &JointType| [j.parent + j.child, j.parent.min(j.child)] == [b + other_b, *b.min(other_b)];
             let joined = m == other_m && state.module_type(*m).joints.iter().any(joint);
-            assert!(joined || !overlap(solid, other, skin), "{m}.{b} and {other_m}.{other_b} at {now}: {spans:?}");
+            assert!(joined || !overlap(solid, other, skin), "{m}.{b} and {other_m}.{other_b} at {now}: {run:?}");
         }
         assert_eq!(around.overlaps(solid, skin), []);
     }
