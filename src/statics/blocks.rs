@@ -77,8 +77,11 @@ pub(super) fn ends(structure: &Structure, link: Link) -> [Vertex; 2] {
 /// Cuts `structure` into blocks. Links between two immovable things carry
 /// nothing and belong to no block.
 pub(super) fn cut(structure: &Structure) -> Blocks {
+    // In a tree every body has a block of its own. What stays is taken from memory before what
+    // does not, so that no gap is left in between.
+    let found = Blocks { blocks: Vec::with_capacity(structure.bodies.len()), afloat: Vec::new() };
     let graph = Graph::new(structure);
-    let mut search = Search::new(&graph);
+    let mut search = Search::new(&graph, found);
     search.grow(Vertex::Ground);
     for (i, body) in structure.bodies.iter().enumerate() {
         if !body.fixed && search.is_new(number(Vertex::Body(i))) {
@@ -186,15 +189,14 @@ struct Search<'g> {
 }
 
 impl<'g> Search<'g> {
-    fn new(graph: &'g Graph) -> Self {
+    fn new(graph: &'g Graph, found: Blocks) -> Self {
         Self {
             graph,
             entered: vec![0; graph.first.len() - 1],
             clock: 0,
             open_links: Vec::new(),
             open_bodies: Vec::new(),
-            // In a tree every body has a block of its own.
-            found: Blocks { blocks: Vec::with_capacity(graph.first.len()), afloat: Vec::new() },
+            found,
         }
     }
 

@@ -23,10 +23,12 @@ use super::parts::{Part, START};
 use super::second_order::dot;
 use super::series::flexibility_root;
 
-/// What all cones together dissipate at the start, at forces that are typical. In a motion that
-/// proves a bound it is about 1 (more begins farther inside the cones): how many cones share it
-/// must not matter, or large programs begin far off and take more steps.
+/// What all cones together dissipate at the start, at forces that are typical, in a program of at
+/// least so many bodies. In a motion that proves a bound it is 1; more begins farther inside the
+/// cones. If it grew with the number of cones, as 1 for each of few does no harm, so would the
+/// number of steps.
 const OPENING: f64 = 30.0;
+const LARGE: usize = 200;
 
 /// The row that ties two single variables, its unknown motion eliminated.
 struct Tie {
@@ -107,7 +109,8 @@ impl<const D: usize> System<D> {
     ) -> Self {
         let heads = parts.iter().filter(|part| part.cone != Cone::Free).count() as f64;
         let links = parts.iter().map(|part| part.link + 1).max().unwrap_or(0);
-        let start = [force, (OPENING / heads).min(1.0)];
+        let opening = if loads.len() < LARGE { 1.0 } else { (OPENING / heads).min(1.0) };
+        let start = [force, opening];
         let mut families = Families {
             one: Family::default(),
             two: Family::default(),
