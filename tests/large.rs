@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicBool;
 use steadfast::generate::{Family, Pair, Request, generate};
 use steadfast::io::{SourceFile, no_references, read_problem};
 use steadfast::reconfigure::replay::replay;
-use steadfast::reconfigure::{Event, Limit, Method, Nearest, Options, Outcome, Plan, Report, solve};
+use steadfast::reconfigure::{Event, Limit, Method, Nearest, Objective, Options, Outcome, Plan, Report, solve};
 use steadfast::robot::{
     Catalogue, Cell, Configuration, Environment, Goal, Ground, Matching, Module, ModuleLoad, Placement, Requirement,
 };
@@ -73,6 +73,28 @@ fn random_pairs_are_solved_and_replayed() {
     for (modules, seed) in [(12, 1), (14, 4), (20, 3)] {
         let (start, goal) = random_pair(modules, seed);
         verified(&start, &goal, &decompose(&start, &goal, Options::default()));
+    }
+}
+
+#[test]
+fn several_plans_are_ranked_and_replayed() {
+    let (start, goal) = random_pair(20, 3);
+    for objective in [Objective::Margin, Objective::Pareto] {
+        let report = decompose(&start, &goal, Options { objective, plans: 3, ..Options::default() });
+        let best = verified(&start, &goal, &report);
+        assert!(
+            objective == Objective::Pareto || !report.alternatives.is_empty(),
+            "larger and larger margins are tried"
+        );
+        let mut before = best;
+        for plan in &report.alternatives {
+            assert_eq!(replay(&start, &goal, plan, report.required.unwrap()).unwrap().failures, []);
+            let [margin, next] = [before, plan].map(|plan| plan.margin.unwrap().lower);
+            assert!(next <= margin && (objective == Objective::Margin || plan.moves < before.moves));
+            before = plan;
+        }
+        let is_cut = objective == Objective::Pareto || report.alternatives.len() < 2;
+        assert_eq!(report.alternatives_cut_by, is_cut.then_some(Limit::Incomplete));
     }
 }
 

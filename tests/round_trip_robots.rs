@@ -279,6 +279,7 @@ fn impossible() -> impl Strategy<Value = Impossible> {
             required,
             connection,
         }),
+        (any::<i32>(), which()).prop_map(|(level, which)| Impossible::Sealed { level, which }),
         prop_oneof![number(), Just(f64::NEG_INFINITY)].prop_map(|required| Impossible::Exhausted { required }),
     ]
 }

@@ -41,6 +41,7 @@ mod refusal;
 pub mod replay;
 mod sampling;
 mod saturated;
+mod sealed;
 mod solve;
 mod step;
 mod stronger;

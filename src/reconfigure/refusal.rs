@@ -64,6 +64,15 @@ pub enum Which {
     Goal,
 }
 
+impl Which {
+    fn other(self) -> Self {
+        match self {
+            Self::Start => Self::Goal,
+            Self::Goal => Self::Start,
+        }
+    }
+}
+
 /// Why there is no plan. `C` names a connection of the robot.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Impossible<C = FaceConnection> {
@@ -93,6 +102,14 @@ pub enum Impossible<C = FaceConnection> {
         required: f64,
         /// The connection that fails first, if it is one; by ports of the start or the goal.
         connection: Option<C>,
+    },
+    /// Start or goal has no module in some cells near the ground, the other has, and no module gets there while none is
+    /// there, nor does the last one leave.
+    Sealed {
+        /// The cells: those whose third coordinate is this or less.
+        level: i32,
+        /// The one of the two that has none there.
+        which: Which,
     },
     /// Every sequence of actions was tried, or proved too weak.
     Exhausted {
@@ -177,6 +194,12 @@ impl<C> fmt::Display for Impossible<C> {
                 f,
                 "the {which} is not stable enough: its margin is at most {:.4}, {required:.4} is required",
                 margin.upper
+            ),
+            Self::Sealed { level, which } => write!(
+                f,
+                "the {which} has no module in cells at a height of {level} or below, the {} has, and there the first \
+                 one cannot come nor the last one leave",
+                which.other()
             ),
             Self::Exhausted { required } if *required == f64::NEG_INFINITY => {
                 f.write_str("no sequence of actions leads from the start to the goal")

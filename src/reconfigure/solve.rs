@@ -22,6 +22,7 @@ use super::primitive::Primitive;
 use super::problem::Problem;
 use super::refusal::{Impossible, Refusal, Rejection, Which};
 use super::saturated::{self, Saturated};
+use super::sealed::sealed;
 use super::step::Step;
 use super::symmetry::Symmetry;
 use super::trace::Trace;
@@ -61,7 +62,8 @@ pub fn solve(
     }
     let solves = || domain.oracle.solves();
     let task = Task { options, required, began, solves: &solves };
-    let mut report = match ends.reason(&domain, goal, required) {
+    let reason = ends.reason(&domain, goal, required).or_else(|| sealed(&problem));
+    let mut report = match reason {
         Some(reason) => Report::impossible(options.objective, required, reason),
         None if is_for_decomposition(&problem, options) => {
             let ends = large::Ends { start: ends.start, goal: ends.goal };
@@ -143,7 +145,7 @@ fn is_for_decomposition(problem: &Problem, options: &Options) -> bool {
         Method::Decompose => true,
         Method::Auto => {
             let movable = problem.start().modules.iter().filter(|module| !module.fixed).count();
-            movable > exact_modules(options) && options.reduction == Reduction::Saturated && options.plans <= 1
+            movable > exact_modules(options) && options.reduction == Reduction::Saturated
         }
     }
 }

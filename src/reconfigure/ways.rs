@@ -41,6 +41,11 @@ impl Way {
         cells.map(move |&cell| displaced(from, cell))
     }
 
+    /// Whether its needs can be met, for the module in `from`, by modules in cells that `may` hold one alone.
+    pub fn can_be_met(&self, from: Cell, may: impl Fn(Cell) -> bool) -> bool {
+        self.needs.iter().any(|need| need.occupied.iter().all(|&cell| may(displaced(from, cell))))
+    }
+
     /// Whether modules are where it needs them for the module in `from`, and nowhere in its room.
     fn fits(&self, from: Cell, layout: &Layout) -> bool {
         self.room.iter().all(|&cell| !layout.is_filled(displaced(from, cell)))

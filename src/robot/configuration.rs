@@ -7,6 +7,7 @@ use petgraph::unionfind::UnionFind;
 use crate::spatial::{Pose, Vec3};
 
 use super::catalogue::Catalogue;
+use super::connection::{Connection, OnModule};
 use super::environment::Environment;
 use super::lattice::{Face, Placement};
 use super::module_type::ModuleType;
@@ -35,24 +36,14 @@ pub struct Port {
     pub face: Face,
 }
 
+impl OnModule for Port {
+    fn module(&self) -> usize {
+        self.module
+    }
+}
+
 /// An engaged connection between two coinciding faces.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct FaceConnection {
-    /// The two ports, the smaller one first.
-    pub ports: [Port; 2],
-}
-
-impl FaceConnection {
-    /// A connection between two ports, in either order.
-    pub fn new(a: Port, b: Port) -> Self {
-        Self { ports: if a <= b { [a, b] } else { [b, a] } }
-    }
-
-    /// The two modules, in the order of the ports.
-    pub fn modules(&self) -> [usize; 2] {
-        self.ports.map(|port| port.module)
-    }
-}
+pub type FaceConnection = Connection<Port>;
 
 /// An external wrench that stays on a module wherever it goes.
 #[derive(Clone, Debug, PartialEq)]

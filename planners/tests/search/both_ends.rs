@@ -3,7 +3,7 @@
 use planners::{Outcome, Search};
 use proptest::prelude::*;
 
-use crate::optimality::{check_path, options};
+use crate::optimality::{check_path, check_shortest, options};
 use crate::reference;
 use crate::sample::{blurred, exact};
 
@@ -13,18 +13,7 @@ proptest! {
     #[test]
     fn both_ends_agree_with_dijkstra(graph in exact(9, 24), floor in 0..12_u32) {
         let floor = f64::from(floor);
-        let truth = reference::shortest(&graph, floor, |width| width.upper);
-        match Search::new(&graph, options()).from_both_ends(floor) {
-            Outcome::Solved { found, proof } => {
-                check_path(&graph, &found);
-                prop_assert!(found.width.lower >= floor);
-                prop_assert_eq!(Some(found.cost), truth);
-                prop_assert_eq!(Some(proof.cost_at_least), truth);
-                prop_assert!(proof.cost_optimal);
-            }
-            Outcome::Impossible => prop_assert_eq!(truth, None),
-            Outcome::OutOfBudget { limit, .. } => prop_assert!(false, "{:?}", limit),
-        }
+        check_shortest(&graph, floor, Search::new(&graph, options()).from_both_ends(floor))?;
     }
 
     #[test]

@@ -28,6 +28,23 @@ pub fn check_path(graph: &Graph, path: &Path<usize, u8>) {
     assert_eq!((cost, width), (path.cost, path.width));
 }
 
+/// Checks that what is said to be shortest, with a proof, has the cost that Dijkstra finds.
+pub fn check_shortest(graph: &Graph, floor: f64, outcome: Outcome<Path<usize, u8>>) -> Result<(), TestCaseError> {
+    let truth = reference::shortest(graph, floor, |width| width.upper);
+    match outcome {
+        Outcome::Solved { found, proof } => {
+            check_path(graph, &found);
+            prop_assert!(found.width.lower >= floor);
+            prop_assert_eq!(Some(found.cost), truth);
+            prop_assert_eq!(Some(proof.cost_at_least), truth);
+            prop_assert!(proof.cost_optimal);
+        }
+        Outcome::Impossible => prop_assert_eq!(truth, None),
+        Outcome::OutOfBudget { limit, .. } => prop_assert!(false, "{:?}", limit),
+    }
+    Ok(())
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(2000))]
 
@@ -50,18 +67,7 @@ proptest! {
     #[test]
     fn shortest_agrees_with_dijkstra(graph in exact(9, 24), floor in 0..12_u32) {
         let floor = f64::from(floor);
-        let truth = reference::shortest(&graph, floor, |width| width.upper);
-        match Search::new(&graph, options()).shortest(floor) {
-            Outcome::Solved { found, proof } => {
-                check_path(&graph, &found);
-                prop_assert!(found.width.lower >= floor);
-                prop_assert_eq!(Some(found.cost), truth);
-                prop_assert_eq!(Some(proof.cost_at_least), truth);
-                prop_assert!(proof.cost_optimal);
-            }
-            Outcome::Impossible => prop_assert_eq!(truth, None),
-            Outcome::OutOfBudget { limit, .. } => prop_assert!(false, "{:?}", limit),
-        }
+        check_shortest(&graph, floor, Search::new(&graph, options()).shortest(floor))?;
     }
 
     #[test]

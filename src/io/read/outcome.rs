@@ -87,6 +87,7 @@ fn impossible<F: Family>(
                 connection,
             }
         }
+        wire::Impossible::Sealed { level, which: end } => Impossible::Sealed { level: *level, which: which(*end) },
         wire::Impossible::Exhausted { required_margin } => {
             Impossible::Exhausted { required: required_margin.map_or(f64::NEG_INFINITY, |margin| margin.0) }
         }

@@ -58,6 +58,14 @@ pub(crate) enum Impossible {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         joint: Option<JointOf>,
     },
+    /// One of the two has modules in cells near the ground where none comes unless one is there, and which the last one
+    /// does not leave.
+    Sealed {
+        /// The cells: those whose third coordinate is this or less.
+        level: i32,
+        /// The start or the goal, whichever has none there.
+        which: Which,
+    },
     /// Every sequence of actions was tried, or proved too weak.
     Exhausted {
         /// The margin required; null when none was.

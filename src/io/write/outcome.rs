@@ -29,6 +29,7 @@ pub(super) fn impossible<F: Family>(
                 joint,
             }
         }
+        Impossible::Sealed { level, which: end } => wire::Impossible::Sealed { level: *level, which: which(*end) },
         Impossible::Exhausted { required } => {
             wire::Impossible::Exhausted { required_margin: (*required != f64::NEG_INFINITY).then_some(Real(*required)) }
         }

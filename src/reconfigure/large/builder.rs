@@ -2,7 +2,6 @@
 //!
 //! Knows which module goes where next; does not know which margins are worth trying.
 
-use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet, HashSet};
 
 use crate::reconfigure::assembly::Engagement;
@@ -14,6 +13,8 @@ use crate::reconfigure::layout::{Layout, Placed};
 use crate::reconfigure::moves::Move;
 use crate::robot::{Cell, Occupancy, Placement};
 
+use super::journey::{Direction, Journey};
+use super::order::{Lessons, Rank, by_steps};
 use super::shape::{Targets, bounds, distances, is_connected, lot, open, surplus, vacant};
 use super::walk::{Walk, reaches};
 use super::ways::Ways;
@@ -33,13 +34,10 @@ const IDLE: usize = 12;
 /// Carries per module, in all, after which an attempt gives up.
 const CARRIES: usize = 32;
 
-/// How early a cell is taken, smallest first: how often it was not left empty at a dead end, steps, height, and a lot.
-type Rank = (Reverse<u32>, u32, i32, u64);
-
 /// One module carried from one cell to another.
 #[derive(Clone, Debug)]
 pub struct Carry {
-    /// Its moves.
+    /// Its moves, in the order of the plan.
     pub path: Vec<Move>,
     /// What the others carry meanwhile is proved to leave this margin.
     pub margin: f64,
@@ -51,7 +49,7 @@ pub type Watch<'w> = dyn FnMut(u64) -> bool + 'w;
 /// How an attempt ended.
 #[derive(Clone, Debug)]
 pub enum Attempt {
-    /// The goal's cells are filled.
+    /// All that is wanted is in place: what the plan carries, in its order.
     Done(Vec<Carry>),
     /// Nothing that was tried leads on.
     Stuck(Nearest),
@@ -70,9 +68,10 @@ struct Before {
     away: usize,
 }
 
-/// A robot on its way to the goal.
+/// A robot on its way to where it is wanted.
 pub struct Builder<'a> {
     domain: &'a Domain<'a>,
+    direction: Direction,
     targets: &'a Targets,
     /// Margin that is asked of every state.
     floor: f64,
@@ -84,8 +83,8 @@ pub struct Builder<'a> {
     carries: Vec<Carry>,
     /// What was so before each carry.
     before: Vec<Before>,
-    /// How often cells of the goal were empty at a dead end.
-    empty: BTreeMap<Cell, u32>,
+    /// What dead ends taught.
+    lessons: Lessons,
     /// Empty cells of the goal that are open to the outside, and must stay so until they are filled.
     open: BTreeSet<Cell>,
     /// No layout is met twice.
@@ -99,28 +98,28 @@ pub struct Builder<'a> {
 }
 
 impl<'a> Builder<'a> {
-    /// At the start of a problem, to give up at dead end number `patience + 1`.
-    pub fn new(domain: &'a Domain<'a>, targets: &'a Targets, floor: f64, seed: u64, patience: usize) -> Self {
-        let problem = domain.problem;
-        let layout = problem.start_layout().clone();
+    /// Where a journey begins, to give up at dead end number `patience + 1`.
+    pub fn new(domain: &'a Domain<'a>, journey: &'a Journey, floor: f64, seed: u64, patience: usize) -> Self {
+        let Journey { direction, layout, placements, targets } = journey;
         let cells = layout.placed().iter().map(|placed| placed.cell).chain(targets.keys().copied());
         Self {
             domain,
+            direction: *direction,
             targets,
             floor,
             seed,
             bounds: bounds(cells, ROOM),
-            placements: problem.start().modules.iter().map(|module| module.placement).collect(),
+            placements: placements.clone(),
             carries: Vec::new(),
             before: Vec::new(),
-            empty: BTreeMap::new(),
+            lessons: Lessons::default(),
             open: BTreeSet::new(),
             met: HashSet::from([layout.clone()]),
             patience,
             solves_before: 0,
             walks: 0,
             is_stopped: false,
-            layout,
+            layout: layout.clone(),
         }
     }
 
@@ -128,7 +127,7 @@ impl<'a> Builder<'a> {
     ///
     /// On a dead end all carries are undone back to before the last one that brought a module home, on the next
     /// one to before the last two, then four, and so on. As no layout is met twice, other carries follow, and what was
-    /// left empty is filled earlier.
+    /// left empty is filled earlier, what was left full freed earlier.
     pub fn run(mut self, ways: &mut Ways<'a>, rests: &mut Rests<'a>, watch: &mut Watch) -> Attempt {
         self.solves_before = rests.solves();
         let modules = self.layout.placed().len();
@@ -137,6 +136,9 @@ impl<'a> Builder<'a> {
         for _ in 0..CARRIES * modules.max(1) {
             let left = surplus(&self.layout, self.targets);
             if left.is_empty() {
+                if self.direction == Direction::Backwards {
+                    self.carries.reverse();
+                }
                 return Attempt::Done(self.carries);
             }
             idle = if left.len() < fewest { 0 } else { idle + 1 };
@@ -186,9 +188,7 @@ impl<'a> Builder<'a> {
 
     /// Undoes carries back to before the last ones that brought so many modules home, or all.
     fn undo(&mut self, homecomings: usize) {
-        for cell in vacant(&self.layout, self.targets).into_keys() {
-            *self.empty.entry(cell).or_default() += 1;
-        }
+        self.lessons.note(&self.layout, self.targets);
         let mut away = surplus(&self.layout, self.targets).len();
         let most = away + homecomings;
         while away < most
@@ -206,8 +206,8 @@ impl<'a> Builder<'a> {
         let is_at_home = |placed: &Placed| self.targets.get(&placed.cell) == Some(&placed.class);
         let mut covers: Vec<Placed> = self.layout.placed().iter().copied().filter(is_at_home).collect();
         let home: Vec<Cell> = covers.iter().map(|placed| placed.cell).collect();
-        let to_fill = self.filling_order(&home, &vacant);
-        let movers = self.freeing_order(&home, left.iter().copied());
+        let to_fill = self.lessons.filling_order(&home, &vacant, self.targets, self.seed);
+        let movers = self.lessons.freeing_order(&home, left, &self.layout, self.seed);
         if movers.iter().any(|&mover| self.carry(mover, &to_fill, ways, rests, watch)) {
             return true;
         }
@@ -231,44 +231,16 @@ impl<'a> Builder<'a> {
             || covers.iter().any(|&cover| self.carry(cover, &closer, ways, rests, watch))
     }
 
-    /// Empty cells of the goal with how early they should be filled: outwards from what is in place.
-    fn filling_order(&self, home: &[Cell], vacant: &BTreeMap<Cell, u16>) -> BTreeMap<Cell, Rank> {
-        let from_home = distances(home.iter().copied(), |cell| self.targets.contains_key(&cell));
-        let rank = |cell: Cell| {
-            let steps = from_home.get(&cell).copied().unwrap_or(u32::MAX);
-            let empty = self.empty.get(&cell).copied().unwrap_or(0);
-            (Reverse(empty), steps, cell[2], lot(self.seed, cell))
-        };
-        vacant.keys().map(|&cell| (cell, rank(cell))).collect()
-    }
-
-    /// Modules that can move at all, those that are farthest from what is in place first.
-    fn freeing_order(&self, home: &[Cell], movers: impl Iterator<Item = Placed>) -> Vec<Placed> {
-        let from_home = distances(home.iter().copied(), |cell| self.layout.is_filled(cell));
-        let steps = |cell: Cell| from_home.get(&cell).copied().unwrap_or(u32::MAX);
-        let mut movers: Vec<Placed> = movers.collect();
-        movers.sort_by_key(|placed| (Reverse((steps(placed.cell), placed.cell[2])), lot(self.seed, placed.cell)));
-        movers
-    }
-
     /// All cells around by how close they are to the empty cells of the goal.
     fn closer(&self, vacant: &BTreeMap<Cell, u16>) -> BTreeMap<Cell, Rank> {
-        self.by_steps(vacant.keys().copied())
+        by_steps(vacant.keys().copied(), self.bounds, self.seed)
     }
 
     /// All cells around that the goal leaves empty, by how close they are to it: for modules in the cells of others.
     fn aside(&self) -> BTreeMap<Cell, Rank> {
-        let mut cells = self.by_steps(self.targets.keys().copied());
+        let mut cells = by_steps(self.targets.keys().copied(), self.bounds, self.seed);
         cells.retain(|cell, _| !self.targets.contains_key(cell));
         cells
-    }
-
-    /// All cells around by how close they are to some.
-    fn by_steps(&self, cells: impl Iterator<Item = Cell>) -> BTreeMap<Cell, Rank> {
-        let [low, high] = self.bounds;
-        let within = |cell: Cell| (0..3).all(|i| low[i] <= cell[i] && cell[i] <= high[i]);
-        let steps = distances(cells, within);
-        steps.into_iter().map(|(cell, steps)| (cell, (Reverse(0), steps, cell[2], lot(self.seed, cell)))).collect()
     }
 
     /// Carries a module to the first of the ranked cells that it can be carried to, if that is better than
@@ -295,7 +267,7 @@ impl<'a> Builder<'a> {
                 return false;
             }
             self.walks += 1;
-            let walk = Walk::new(self.domain, ways, (&rest, mover), self.floor, &shunned, self.bounds);
+            let walk = Walk::new(self.domain, ways, (&rest, mover, self.direction), self.floor, &shunned, self.bounds);
             let reached = walk.reached[1..].iter().copied().filter(|cell| !refused.contains(cell));
             let mut reached: Vec<Cell> = reached.filter(|cell| ranked.contains_key(cell)).collect();
             reached.sort_by_key(|cell| ranked[cell]);
@@ -374,8 +346,11 @@ impl<'a> Builder<'a> {
         let moved = self.placements.iter_mut().find(|placement| placement.cell == mover.cell);
         if let Some(placement) = moved {
             placement.cell = to;
-            let turned = path.iter().fold(placement.orientation, |turned, step| turned.turned(step.rotation()));
-            placement.orientation = turned;
+            // Backwards it does not matter how modules are turned.
+            if self.direction == Direction::Forwards {
+                let turned = path.iter().fold(placement.orientation, |turned, step| turned.turned(step.rotation()));
+                placement.orientation = turned;
+            }
         }
         self.met.insert(self.layout.clone());
         self.carries.push(Carry { path, margin });

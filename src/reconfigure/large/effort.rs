@@ -2,10 +2,6 @@
 //!
 //! Knows counts of work; does not know what is done.
 
-/// Work that an attempt may take before there is a plan, for every module that is not in place: at a larger margin than is
-/// required, and at the required one.
-const EFFORT: [u64; 2] = [150, 1500];
-
 /// Work that one further attempt may take, and all of them together, in terms of that which led to the first plan.
 const FURTHER: [u64; 2] = [2, 4];
 
@@ -28,10 +24,10 @@ impl Effort {
         Self { away: (away as u64).max(1), first: None, further: 0 }
     }
 
-    /// Work that the next attempt may take; `None` where none is worth it any more. `is_required` says that it is for the
-    /// margin that is required, below which there is nothing to try.
-    pub fn limit(&self, is_required: bool) -> Option<u64> {
-        let Some(first) = self.first else { return Some(LEAST[0] + self.away * EFFORT[usize::from(is_required)]) };
+    /// Work that the next attempt may take, before there is a plan so much `each` for every module that is not in place;
+    /// `None` where none is worth it any more.
+    pub fn limit(&self, each: u64) -> Option<u64> {
+        let Some(first) = self.first else { return Some(LEAST[0] + self.away * each) };
         let [one, all] = [0, 1].map(|which| LEAST[which].max(FURTHER[which] * first));
         // Less than what led to the first plan leads to no other.
         let left = all.saturating_sub(self.further);
@@ -55,13 +51,13 @@ mod tests {
     #[test]
     fn attempts_after_the_first_plan_end() {
         let mut effort = Effort::new(10);
-        let before = effort.limit(false).unwrap();
-        assert!(effort.limit(true).unwrap() > before);
+        let before = effort.limit(100).unwrap();
+        assert!(effort.limit(200).unwrap() > before);
         effort.note(before, false);
-        assert_eq!(effort.limit(false), Some(before), "as long as there is no plan, all margins are worth the same");
+        assert_eq!(effort.limit(100), Some(before), "as long as there is no plan, all margins are worth the same");
         effort.note(20_000, true);
         let mut further = 0;
-        while let Some(limit) = effort.limit(false) {
+        while let Some(limit) = effort.limit(100) {
             assert!((20_000..=40_000).contains(&limit));
             effort.note(limit, false);
             further += limit;

@@ -57,6 +57,11 @@ impl Levels {
         self.tried == Some(0)
     }
 
+    /// Forgets which ones were not attained: there is another way to try.
+    pub fn reopen(&mut self) {
+        self.missed = self.listed.len();
+    }
+
     /// Takes note of whether the last one was attained.
     pub fn note(&mut self, is_attained: bool) {
         match (self.tried, is_attained) {

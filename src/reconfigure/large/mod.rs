@@ -1,20 +1,27 @@
 //! Plans for robots of hundreds of modules, far beyond exact search: one module after another leaves where it is
 //! not wanted, walks over the others, and stays where one is wanted.
 //!
-//! - `shape` says which modules are where none is wanted, in which order to free and to fill cells, and
-//!   which cells must stay open to the outside;
+//! - `journey` says from where to where: from the start to the goal, or back, since every move reverses;
+//! - `shape` says which modules are where none is wanted, and which cells must stay open to the outside;
+//! - `order` says in which order to free and to fill cells, and learns from dead ends;
 //! - `walk` finds where one module can get to, by moves whose own margins (`ways`) are large enough;
 //! - `builder` chooses the module and its place, asks whether the others carry the walk
 //!   ([`hanging`](super::hanging)), uncovers what is buried, and undoes carries on dead ends;
 //! - `levels` says which margins to try for, and `effort` how much work each is worth;
+//! - `found` keeps the plans that are wanted;
 //! - `script` turns carries into a plan with what was proved of every action.
 //!
 //! Every transient state of the plan is proved to have the margin that the plan claims. Nothing is proved about
 //! other plans but what start and goal alone say. Modules that carry loads of their own stay where they are.
 
 mod builder;
+#[cfg(test)]
+mod dead_end_tests;
 mod effort;
+mod found;
+mod journey;
 mod levels;
+mod order;
 mod script;
 mod shape;
 mod walk;
@@ -34,10 +41,11 @@ use super::plan::{Objective, Outcome, Plan, Proof, Report, Statistics};
 use crate::statics::Bracket;
 use builder::{Attempt, Builder};
 use effort::Effort;
+use found::Found;
+use journey::{Direction, Journey};
 use levels::Levels;
 pub use script::Ends;
 use script::write;
-use shape::Targets;
 pub use ways::{Ways, shift};
 
 /// Most modules for which all is searched unless asked otherwise, where the margin counts first. On random pairs of 8 cubes
@@ -55,11 +63,30 @@ pub fn exact_modules(options: &Options) -> usize {
     if by_margin { EXACT_FOR_MARGIN } else { EXACT_FOR_MOVES }
 }
 
-/// Attempts at the required margin, each with another seed. At larger ones there is one.
-const ATTEMPTS: u64 = 3;
+/// One attempt at one margin.
+#[derive(Clone, Copy)]
+struct Try {
+    /// Which way.
+    direction: Direction,
+    /// Dead ends that are put up with.
+    patience: usize,
+    /// Work that it may take before there is a plan, for every module that is not in place.
+    effort: u64,
+}
 
-/// Dead ends that are put up with in an attempt at a larger margin than is required, and at the required one.
-const PATIENCE: [usize; 2] = [4, 40];
+/// Attempts at the required margin, each with another seed: both ways in turn, with more and more patience.
+const AT_REQUIRED: [Try; 6] = {
+    const fn attempt(direction: Direction, times: usize) -> Try {
+        Try { direction, patience: 10 * times, effort: 400 * times as u64 }
+    }
+    let (on, back) = (Direction::Forwards, Direction::Backwards);
+    [attempt(on, 1), attempt(back, 1), attempt(on, 2), attempt(back, 2), attempt(on, 4), attempt(back, 4)]
+};
+
+/// The only attempt at a larger margin, in some direction.
+const fn at_larger(direction: Direction) -> Try {
+    Try { direction, patience: 4, effort: 150 }
+}
 
 /// Decomposes a problem whose start and goal are known to be connected and stable enough.
 pub fn decompose(
@@ -71,15 +98,16 @@ pub fn decompose(
 ) -> Report {
     let problem = domain.problem;
     let goal = problem.goal().placed_best(problem.start_layout());
-    let targets: Targets = goal.placed().iter().map(|placed| (placed.cell, placed.class)).collect();
+    let journeys = Journey::both(problem, &goal);
+    let surplus = shape::surplus(problem.start_layout(), &shape::targets(&goal)).len();
     let mut ways = Ways::new(domain);
     let mut rests = Rests::new(problem.start());
     let budget = budget(options, began);
     // Every module that is not where the goal wants one moves at least once. In a free frame others might stay.
-    let fewest = if problem.goal().is_free() { 0 } else { shape::surplus(problem.start_layout(), &targets).len() };
-    let fewest = u32::try_from(fewest).unwrap_or(u32::MAX);
-    let mut effort = Effort::new(shape::surplus(problem.start_layout(), &targets).len());
-    let mut plan: Option<Plan> = None;
+    let fewest = if problem.goal().is_free() { 0 } else { u32::try_from(surplus).unwrap_or(u32::MAX) };
+    let mut effort = Effort::new(surplus);
+    let needs = |step| problem.needs(step);
+    let mut plans = Found::new(options, &needs);
     let mut nearest: Option<Nearest> = None;
     let mut stopped = None;
     let mut statistics = Statistics::default();
@@ -94,13 +122,15 @@ pub fn decompose(
         oracle_solves: domain.oracle.solves() + asked.load(Ordering::Relaxed),
     };
     let mut levels = Levels::new(domain, required, ends.at_most());
+    let mut direction = Direction::Forwards;
     while let Some(floor) = levels.next(&ways) {
-        let is_required = levels.is_required();
-        let patience = PATIENCE[usize::from(is_required)];
+        let larger = [at_larger(direction)];
+        let tries = if levels.is_required() { &AT_REQUIRED[..] } else { &larger };
         let mut is_attained = false;
-        for attempt in 0..if is_required { ATTEMPTS } else { 1 } {
+        for (attempt, Try { direction: way, patience, effort: each }) in (0..).zip(tries.iter().copied()) {
+            let Some(journey) = journeys.iter().find(|journey| journey.direction == way) else { continue };
             let seed = options.seed.wrapping_add(attempt);
-            let Some(limit) = effort.limit(is_required) else { break };
+            let Some(limit) = effort.limit(each) else { break };
             let mut work = 0;
             let mut watch = |done: u64| {
                 work = done;
@@ -108,26 +138,32 @@ pub fn decompose(
                     return false;
                 }
                 statistics.expanded += 1;
-                on_event(&Event { news: News::Progress, known: known(plan.as_ref(), statistics.expanded) });
+                on_event(&Event { news: News::Progress, known: known(plans.best(), statistics.expanded) });
                 let bytes = options.measure_bytes.and_then(|measure| measure()).unwrap_or(0);
                 statistics.bytes = statistics.bytes.max(bytes as u64);
                 let expanded = statistics.expanded;
                 stopped = budget.exceeded(&planners::Statistics { expanded, bytes, ..planners::Statistics::default() });
                 stopped.is_none()
             };
-            let found = Builder::new(domain, &targets, floor, seed, patience).run(&mut ways, &mut rests, &mut watch);
+            let found = Builder::new(domain, journey, floor, seed, patience).run(&mut ways, &mut rests, &mut watch);
             effort.note(work, matches!(found, Attempt::Done(_)));
             match found {
                 Attempt::Done(carries) => {
                     is_attained = true;
+                    if way != direction {
+                        direction = way;
+                        levels.reopen();
+                    }
                     let written = write(domain, &mut ways, &carries, &ends);
+                    let moves = carries.iter().flat_map(|carry| carry.path.iter().copied()).collect();
                     let is_enough = |margin: Bracket| required.is_none_or(|required| margin.lower >= required);
-                    if written.margin.is_none_or(is_enough) && is_better(&written, plan.as_ref(), options.objective) {
-                        let news = News::Plan(written.clone());
-                        plan = Some(written);
-                        on_event(&Event { news, known: known(plan.as_ref(), statistics.expanded) });
+                    if written.margin.is_none_or(is_enough) && plans.add(written.clone(), moves) {
+                        let news = News::Plan(written);
+                        on_event(&Event { news, known: known(plans.best(), statistics.expanded) });
                     }
                 }
+                // How close it came to the start says nothing of what is in the way.
+                Attempt::Stopped(_) | Attempt::Stuck(_) if way == Direction::Backwards => {}
                 Attempt::Stopped(reached) | Attempt::Stuck(reached) => {
                     nearest = nearest.into_iter().chain([reached]).max_by_key(|nearest| nearest.in_place);
                 }
@@ -137,36 +173,26 @@ pub fn decompose(
             }
         }
         levels.note(is_attained);
-        if effort.limit(false).is_none() || stopped.is_some() {
+        if effort.limit(0).is_none() || stopped.is_some() {
             break;
         }
     }
     statistics.oracle_solves = rests.solves();
-    let nearest = nearest.filter(|_| options.explain && plan.is_none());
+    let nearest = nearest.filter(|_| options.explain && plans.best().is_none());
     let in_the_way = nearest
         .map(|nearest| InTheWay::of_decomposition(nearest, ends.at_most(), required.unwrap_or(f64::NEG_INFINITY)));
+    let ended_by = stopped.unwrap_or(Limit::Incomplete);
+    let is_cut = plans.best().is_some() && !plans.is_enough();
+    let (plan, alternatives) = plans.into_plans();
     Report {
-        outcome: Outcome::OutOfBudget(stopped.unwrap_or(Limit::Incomplete)),
+        outcome: Outcome::OutOfBudget(ended_by),
         objective: options.objective,
         required,
         plan,
-        alternatives: Vec::new(),
-        alternatives_cut_by: None,
+        alternatives,
+        alternatives_cut_by: is_cut.then_some(ended_by),
         in_the_way,
         proof: Proof { optimal: false, margin_at_most: ends.at_most(), moves_at_least: fewest },
         statistics,
     }
-}
-
-/// Whether a plan is better than the best so far.
-fn is_better(plan: &Plan, best: Option<&Plan>, objective: Objective) -> bool {
-    let Some(best) = best else { return true };
-    let margin = |plan: &Plan| plan.margin.map_or(f64::INFINITY, |margin| margin.lower);
-    let by_margin = margin(plan).total_cmp(&margin(best));
-    let by_moves = best.moves.cmp(&plan.moves);
-    let order = match objective {
-        Objective::Moves => by_moves.then(by_margin),
-        _ => by_margin.then(by_moves),
-    };
-    order.is_gt()
 }

@@ -120,13 +120,13 @@ pub fn write(domain: &Domain, ways: &mut Ways, carries: &[Carry], ends: &Ends) -
 
 /// What is known of a move out of a layout with all else connected; `carried` is the margin of the others.
 fn prove(domain: &Domain, ways: &mut Ways, layout: &Layout, step: Move, carried: f64) -> Proved {
-    let unknown = Proved { margin: Bracket::new(carried, 1.0), phase: 1.0, weakest: None };
+    let unknown = |least| Proved { margin: Bracket::new(least, 1.0), phase: 1.0, weakest: None };
     if !domain.stability {
-        return unknown;
+        return unknown(carried);
     }
     let mover = layout.placed()[layout.at(step.from).expect("a move has a module")];
     let rest = Layout::new(layout.placed().iter().copied().filter(|placed| placed.cell != step.from).collect());
-    let Some(way) = ways.of(&rest, mover.class, step) else { return unknown };
+    let Some(way) = ways.of(&rest, mover.class, step) else { return unknown(f64::NEG_INFINITY) };
     let weakest = (way.margin.lower <= carried).then(|| displaced(way.weakest, step.from));
     Proved { margin: Bracket::new(way.margin.lower.min(carried), 1.0), phase: way.phase, weakest }
 }

@@ -7,8 +7,13 @@ use std::collections::{BTreeMap, BTreeSet, HashMap, VecDeque};
 use crate::reconfigure::layout::{Layout, Placed, neighbour};
 use crate::robot::{Cell, Face};
 
-/// The cells of the goal, each with the class that it wants.
+/// Cells where modules are wanted, each with the class that it wants.
 pub type Targets = BTreeMap<Cell, u16>;
+
+/// A layout as what is wanted.
+pub fn targets(layout: &Layout) -> Targets {
+    layout.placed().iter().map(|placed| (placed.cell, placed.class)).collect()
+}
 
 /// Modules that are not where the goal wants one of their class, ascending.
 pub fn surplus(layout: &Layout, targets: &Targets) -> Vec<Placed> {

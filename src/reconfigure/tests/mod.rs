@@ -9,6 +9,7 @@ mod outcomes;
 mod ranking;
 mod reports;
 mod restrictions;
+mod sealed;
 mod stencils;
 mod tampering;
 

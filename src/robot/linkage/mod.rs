@@ -22,6 +22,7 @@ use crate::spatial::{Pose, Vec3};
 
 use super::catalogue::Catalogue;
 use super::configuration::{Matching, ModuleLoad};
+use super::connection::OnModule;
 use super::environment::Environment;
 use super::module_type::ModuleType;
 use super::requirement::Requirement;
@@ -57,24 +58,14 @@ pub struct Port {
     pub port: usize,
 }
 
-/// An engaged connection between two ports.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct Connection {
-    /// The two ports, the smaller one first: the parent of the connection's frame.
-    pub ports: [Port; 2],
-}
-
-impl Connection {
-    /// A connection between two ports, in either order.
-    pub fn new(a: Port, b: Port) -> Self {
-        Self { ports: if a <= b { [a, b] } else { [b, a] } }
-    }
-
-    /// The two modules, in the order of the ports.
-    pub fn modules(&self) -> [usize; 2] {
-        self.ports.map(|port| port.module)
+impl OnModule for Port {
+    fn module(&self) -> usize {
+        self.module
     }
 }
+
+/// An engaged connection between two ports of modules.
+pub type Connection = super::connection::Connection<Port>;
 
 /// A robot at one moment, its surroundings and its loads.
 #[derive(Clone, Debug, PartialEq)]
