@@ -3,14 +3,14 @@
 use crate::spatial::{Twist, Vec3, Wrench};
 
 use super::assessment::{Assessment, Bracket, ConnectionState, Distribution, LeftOut, Question, Verdict};
-use super::blocks::{Block, Link, Vertex};
+use super::blocks::{Block, Link, Vertex, short};
 use super::closed_form::Bridge;
 use super::distribution;
 use super::frame::LinkFrame;
 use super::loads::BodyLoad;
 use super::part::Part;
 use super::rung::Rung;
-use super::structure::Structure;
+use super::structure::{Body, Structure};
 use super::tolerances::{CRITICAL_SHARE, TIE};
 
 /// The answers of the blocks, put together.
@@ -21,9 +21,10 @@ pub(super) struct Answer<'s> {
     collapsed: bool,
     connections: Vec<ConnectionState>,
     contacts: Vec<Vec3>,
-    /// The block whose mechanism proves the lower bound, with its motion.
-    moving: Option<(usize, Vec<Twist>)>,
-    mechanism: Vec<Twist>,
+    /// The bodies of the block whose mechanism proves the lower bound, each with its twist.
+    moving: Vec<(usize, Twist)>,
+    /// The first block that may hang from them.
+    behind: usize,
     /// Per block: lower bound, and its links' shares in its mechanism.
     candidates: Vec<(f64, usize, Vec<f64>)>,
     left_out: LeftOut,
@@ -44,8 +45,8 @@ impl<'s> Answer<'s> {
             collapsed: false,
             connections: vec![idle; structure.connections.len()],
             contacts: vec![Vec3::zeros(); structure.contacts.len()],
-            moving: None,
-            mechanism: vec![Twist::ZERO; structure.bodies.len()],
+            moving: Vec::new(),
+            behind: 0,
             candidates: Vec::new(),
             left_out: LeftOut {
                 fixed_bodies: structure.bodies.iter().filter(|body| body.fixed).count(),
@@ -85,14 +86,13 @@ impl<'s> Answer<'s> {
 
     pub(super) fn collapse_afloat(&mut self, root: usize, twist: Twist) {
         self.collapsed = true;
-        self.mechanism[root] = twist;
-        self.moving = None;
-        self.spread();
+        self.moving = vec![(root, twist)];
+        self.behind = 0;
     }
 
+    /// Adds what was found out about the only link of block `index`.
     pub(super) fn add_bridge(&mut self, index: usize, bridge: &Bridge) {
-        let block = &self.blocks[index];
-        match block.links[0] {
+        match bridge.link {
             Link::Connection(i) => {
                 self.left_out.closed_form_connections += 1;
                 self.record(i, &bridge.wrench, bridge.utilisation.upper);
@@ -107,7 +107,8 @@ impl<'s> Answer<'s> {
         }
         let lower = bridge.utilisation.lower;
         if lower > self.utilisation.lower {
-            self.moving = Some((index, vec![bridge.mechanism(self.structure, block)]));
+            self.moving = vec![(bridge.body, bridge.mechanism(self.structure))];
+            self.behind = index + 1;
         }
         if lower.is_infinite() {
             self.collapsed = true;
@@ -148,7 +149,7 @@ impl<'s> Answer<'s> {
             Part::Collapses { mechanism, decided_by } => {
                 self.decided_by = self.decided_by.max(decided_by);
                 self.collapsed = true;
-                self.moving = Some((index, mechanism));
+                self.move_block(index, &mechanism);
             }
             Part::Stands {
                 utilisation,
@@ -170,7 +171,7 @@ impl<'s> Answer<'s> {
                     }
                 }
                 if utilisation.lower > self.utilisation.lower {
-                    self.moving = Some((index, mechanism));
+                    self.move_block(index, &mechanism);
                 }
                 self.candidates.push((utilisation.lower, index, shares));
                 self.utilisation = self.utilisation.max(utilisation);
@@ -185,24 +186,39 @@ impl<'s> Answer<'s> {
             ConnectionState { wrench: *wrench, strength: utilisation * rated, utilisation, critical: false };
     }
 
-    /// Carries the moving block's motion on to what hangs from it: every block
-    /// comes after the one that its root belongs to.
-    fn spread(&mut self) {
-        let moving = self.moving.take();
-        for (index, block) in self.blocks.iter().enumerate() {
-            if let Some((moved, twists)) = &moving
-                && *moved == index
+    /// Notes the motion of a block that proves the most so far, a twist per body.
+    fn move_block(&mut self, index: usize, twists: &[Twist]) {
+        self.moving = self.blocks[index].bodies.iter().copied().zip(twists.iter().copied()).collect();
+        self.behind = index + 1;
+    }
+
+    /// The motion of all bodies. What hangs from a body that moves, moves with it as one: every
+    /// block comes after the one that its root belongs to.
+    fn mechanism(&self) -> Vec<Twist> {
+        const AT_REST: u32 = u32::MAX;
+        let bodies = &self.structure.bodies;
+        if self.moving.is_empty() {
+            return vec![Twist::ZERO; bodies.len()];
+        }
+        // Whom it moves with first, by short numbers, since blocks are in no order of the bodies.
+        let mut with = vec![AT_REST; bodies.len()];
+        for (number, (body, _)) in self.moving.iter().enumerate() {
+            with[*body] = short(number);
+        }
+        for block in &self.blocks[self.behind..] {
+            if let Vertex::Body(root) = block.root
+                && with[root] != AT_REST
             {
-                for (&body, twist) in block.bodies.iter().zip(twists) {
-                    self.mechanism[body] = *twist;
-                }
-            } else if let Vertex::Body(root) = block.root {
-                let (twist, com) = (self.mechanism[root], self.structure.bodies[root].com);
                 for &body in &block.bodies {
-                    self.mechanism[body] = twist.moved(&(self.structure.bodies[body].com - com));
+                    with[body] = with[root];
                 }
             }
         }
+        let twist = |(body, with): (&Body, u32)| match self.moving.get(with as usize) {
+            Some((mover, twist)) => twist.moved(&(body.com - bodies[*mover].com)),
+            None => Twist::ZERO,
+        };
+        bodies.iter().zip(with).map(twist).collect()
     }
 
     /// Marks the connections that break in the mechanisms of the largest utilisation.
@@ -220,9 +236,7 @@ impl<'s> Answer<'s> {
     }
 
     pub(super) fn finish(mut self) -> Assessment {
-        if self.moving.is_some() {
-            self.spread();
-        }
+        let mechanism = self.mechanism();
         let verdict = if self.collapsed {
             self.utilisation = Bracket::exact(f64::INFINITY);
             Verdict::WholeBodyUnstable
@@ -250,7 +264,7 @@ impl<'s> Answer<'s> {
             connections: self.connections,
             contacts: self.contacts,
             distribution: self.distribution,
-            mechanism: self.mechanism,
+            mechanism,
             left_out: self.left_out,
             undecided_because,
             decided_by: self.decided_by,

@@ -5,7 +5,7 @@ use crate::spatial::{Twist, Wrench};
 
 use super::answer::Answer;
 use super::assessment::{Assessment, Question};
-use super::blocks::{Block, Blocks, Link, cut};
+use super::blocks::{Block, Blocks, Link, cut, short};
 use super::closed_form::assess_bridge;
 use super::loads::{BodyLoad, lump, own_loads};
 use super::part::Part;
@@ -129,15 +129,16 @@ fn assess_pieces(
         }
     }
     let (bridges, cyclic) = if reductions.closed_form {
-        let cyclic = (0..pieces.blocks.len()).filter(|&i| pieces.blocks[i].links.len() > 1);
-        (bridges(structure, &pieces.blocks), cyclic.collect())
+        split(structure, &pieces.blocks)
     } else {
         (Vec::new(), (0..pieces.blocks.len()).collect::<Vec<_>>())
     };
-    for index in bridges {
-        let bridge = assess_bridge(structure, &pieces.blocks[index], &loads);
-        knowledge.note_bridge(pieces.blocks[index].links[0], &bridge.wrench);
-        answer.add_bridge(index, &bridge);
+    for (number, bridge) in bridges.into_iter().enumerate() {
+        let Some([index, body]) = bridge else { continue };
+        let link = number.checked_sub(structure.connections.len()).map_or(Link::Connection(number), Link::Contact);
+        let bridge = assess_bridge(structure, link, body as usize, &loads);
+        knowledge.note_bridge(link, &bridge.wrench);
+        answer.add_bridge(index as usize, &bridge);
     }
     let mut open = Vec::new();
     for index in cyclic {
@@ -186,22 +187,30 @@ fn assess_pieces(
         answer.take(index, part, question);
     }
     answer.choose(question, &loads);
+    // The most of what a large tree takes, and no longer needed.
+    drop(loads);
     answer.finish()
 }
 
-/// The blocks of one link, in the order of the links: what they read and write
-/// of a large structure is then mostly what comes next in memory.
-fn bridges(structure: &Structure, blocks: &[Block]) -> Vec<usize> {
+/// By connection, then by contact, the block that it is the only link of, and its body: what
+/// bridges read and write of a large structure in this order is mostly what comes next in memory.
+/// Then the other blocks.
+fn split(structure: &Structure, blocks: &[Block]) -> (Vec<Option<[u32; 2]>>, Vec<usize>) {
     let connections = structure.connections.len();
-    let mut by_link = vec![None; connections + structure.contacts.len()];
+    let mut bridges = vec![None; connections + structure.contacts.len()];
+    let mut cyclic = Vec::new();
     for (index, block) in blocks.iter().enumerate() {
-        match block.links[..] {
-            [Link::Connection(i)] => by_link[i] = Some(index),
-            [Link::Contact(i)] => by_link[connections + i] = Some(index),
-            _ => {}
-        }
+        let number = match block.links[..] {
+            [Link::Connection(i)] => i,
+            [Link::Contact(i)] => connections + i,
+            _ => {
+                cyclic.push(index);
+                continue;
+            }
+        };
+        bridges[number] = Some([short(index), short(block.bodies[0])]);
     }
-    by_link.into_iter().flatten().collect()
+    (bridges, cyclic)
 }
 
 /// What other parts of the structure need at least: of the next one, it is enough to know that

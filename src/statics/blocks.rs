@@ -77,8 +77,11 @@ pub(super) fn ends(structure: &Structure, link: Link) -> [Vertex; 2] {
 /// Cuts `structure` into blocks. Links between two immovable things carry
 /// nothing and belong to no block.
 pub(super) fn cut(structure: &Structure) -> Blocks {
+    // In a tree every body has a block of its own. What stays is taken from memory before what
+    // does not, so that no gap is left in between.
+    let found = Blocks { blocks: Vec::with_capacity(structure.bodies.len()), afloat: Vec::new() };
     let graph = Graph::new(structure);
-    let mut search = Search::new(&graph);
+    let mut search = Search::new(&graph, found);
     search.grow(Vertex::Ground);
     for (i, body) in structure.bodies.iter().enumerate() {
         if !body.fixed && search.is_new(number(Vertex::Body(i))) {
@@ -113,16 +116,24 @@ fn unnumber(number: u32) -> Vertex {
     if number == 0 { Vertex::Ground } else { Vertex::Body(number as usize - 1) }
 }
 
-fn short(index: usize) -> u32 {
+/// A number of a body, link or block in half the space.
+pub(super) fn short(index: usize) -> u32 {
     u32::try_from(index).expect("memory ends long before four thousand million bodies or links")
 }
 
 impl Graph {
     fn new(structure: &Structure) -> Self {
         let connections = structure.connections.len();
-        let links = (0..connections).map(Link::Connection);
-        let links = links.chain((0..structure.contacts.len()).map(Link::Contact));
-        let joined: Vec<[u32; 2]> = links.map(|link| ends(structure, link).map(number)).collect();
+        // Asking every link's bodies whether they are fixed would mean waiting for memory.
+        let numbers: Vec<u32> =
+            structure.bodies.iter().enumerate().map(|(i, body)| if body.fixed { 0 } else { short(i + 1) }).collect();
+        let at = |anchor: Anchor| match anchor {
+            Anchor::World => 0,
+            Anchor::Body(i) => numbers[i],
+        };
+        let connected = structure.connections.iter().map(|connection| [connection.parent, connection.child]);
+        let touching = structure.contacts.iter().map(|contact| [Anchor::Body(contact.body), contact.against]);
+        let joined: Vec<[u32; 2]> = connected.chain(touching).map(|ends| ends.map(at)).collect();
         let apart = |(_, [a, b]): &(usize, &[u32; 2])| a != b;
         let mut first = vec![0; structure.bodies.len() + 2];
         for (_, ends) in joined.iter().enumerate().filter(apart) {
@@ -151,22 +162,17 @@ impl Graph {
     }
 }
 
-/// When the search came to a vertex.
-#[derive(Clone, Copy, Default)]
-struct Visit {
-    /// Order of entry from 1, 0 before.
-    entered: u32,
-    /// Earliest entry that the subtree reaches over one back edge.
-    low: u32,
-}
-
 /// A vertex on the way from the root to where the search is.
 struct Step {
     at: u32,
     /// The link over which it was entered; that of the root is none of the graph's.
     over: u32,
-    /// Its next incident link.
+    /// Its next incident link, and the end of all.
     next: u32,
+    end: u32,
+    /// Order of its entry, and the earliest entry that its subtree reaches over one back edge.
+    entered: u32,
+    low: u32,
     /// How many links and bodies were open before it was entered.
     links_before: usize,
     bodies_before: usize,
@@ -174,7 +180,8 @@ struct Step {
 
 struct Search<'g> {
     graph: &'g Graph,
-    visits: Vec<Visit>,
+    /// Per vertex the order of its entry from 1, 0 before.
+    entered: Vec<u32>,
     clock: u32,
     open_links: Vec<u32>,
     open_bodies: Vec<usize>,
@@ -182,27 +189,29 @@ struct Search<'g> {
 }
 
 impl<'g> Search<'g> {
-    fn new(graph: &'g Graph) -> Self {
+    fn new(graph: &'g Graph, found: Blocks) -> Self {
         Self {
             graph,
-            visits: vec![Visit::default(); graph.first.len() - 1],
+            entered: vec![0; graph.first.len() - 1],
             clock: 0,
             open_links: Vec::new(),
             open_bodies: Vec::new(),
-            found: Blocks::default(),
+            found,
         }
     }
 
     fn is_new(&self, vertex: u32) -> bool {
-        self.visits[vertex as usize].entered == 0
+        self.entered[vertex as usize] == 0
     }
 
     /// Enters a vertex over a link; the step that leads on from there.
     fn enter(&mut self, at: u32, over: u32) -> Step {
         self.clock += 1;
-        self.visits[at as usize] = Visit { entered: self.clock, low: self.clock };
+        let entered = self.clock;
+        self.entered[at as usize] = entered;
+        let (next, end) = (self.graph.first[at as usize], self.graph.first[at as usize + 1]);
         let (links_before, bodies_before) = (self.open_links.len(), self.open_bodies.len());
-        Step { at, over, next: self.graph.first[at as usize], links_before, bodies_before }
+        Step { at, over, next, end, entered, low: entered, links_before, bodies_before }
     }
 
     /// Depth-first search from `root`. A block is complete, and is cut off, when
@@ -210,11 +219,11 @@ impl<'g> Search<'g> {
     /// complete earlier.
     fn grow(&mut self, root: Vertex) {
         let mut path = vec![self.enter(number(root), u32::MAX)];
-        while let Some(&mut Step { at, over, ref mut next, links_before, bodies_before }) = path.last_mut() {
-            if *next < self.graph.first[at as usize + 1] {
-                let [link, other] = self.graph.incident[*next as usize];
-                *next += 1;
-                if link == over {
+        while let Some(step) = path.last_mut() {
+            if step.next < step.end {
+                let [link, other] = self.graph.incident[step.next as usize];
+                step.next += 1;
+                if link == step.over {
                     continue;
                 }
                 if self.is_new(other) {
@@ -222,28 +231,23 @@ impl<'g> Search<'g> {
                     self.open_links.push(link);
                     self.open_bodies.push(other as usize - 1);
                     path.push(step);
-                } else if self.visits[other as usize].entered < self.visits[at as usize].entered {
+                } else if self.entered[other as usize] < step.entered {
                     self.open_links.push(link);
-                    self.reaches(at, self.visits[other as usize].entered);
+                    step.low = step.low.min(self.entered[other as usize]);
                 }
                 // Otherwise it leads to where the search came back from, and was followed from there.
             } else {
+                let &mut Step { low, links_before, bodies_before, .. } = step;
                 path.pop();
-                if let Some(&Step { at: parent, .. }) = path.last() {
-                    let low = self.visits[at as usize].low;
-                    self.reaches(parent, low);
-                    if low >= self.visits[parent as usize].entered {
-                        self.close(parent, links_before, bodies_before);
+                if let Some(parent) = path.last_mut() {
+                    parent.low = parent.low.min(low);
+                    if low >= parent.entered {
+                        let root = parent.at;
+                        self.close(root, links_before, bodies_before);
                     }
                 }
             }
         }
-    }
-
-    /// Notes that the subtree of a vertex reaches one that was entered then.
-    fn reaches(&mut self, vertex: u32, entered: u32) {
-        let low = &mut self.visits[vertex as usize].low;
-        *low = entered.min(*low);
     }
 
     fn close(&mut self, root: u32, links_before: usize, bodies_before: usize) {

@@ -1,17 +1,22 @@
 //! Blocks of one link: what crosses a bridge follows from balance alone.
 
+use nalgebra::Matrix3;
+
 use crate::spatial::{Twist, Vec3, Wrench};
 
 use super::assessment::Bracket;
-use super::blocks::{Block, Link, Vertex};
+use super::blocks::Link;
 use super::demand::{WrenchError, demand};
-use super::frame::LinkFrame;
+use super::frame::placed;
 use super::loads::BodyLoad;
-use super::structure::Structure;
+use super::structure::{Anchor, Structure};
 use super::tolerances::DATA;
 
 /// What was found out about a bridge.
 pub(super) struct Bridge {
+    pub link: Link,
+    /// The body that hangs there.
+    pub body: usize,
     /// Utilisation of its link, infinite when no strength suffices.
     pub utilisation: Bracket,
     /// Wrench of its link, in the link's frame.
@@ -19,44 +24,47 @@ pub(super) struct Bridge {
     /// Force of a contact on its body, in W.
     pub force: Vec3,
     failing: Twist,
-    frame: LinkFrame,
+    /// Of the link's frame in W.
+    origin: Vec3,
+    axes: Matrix3<f64>,
+    /// Sign of the link's wrench on the body.
+    sign: f64,
 }
 
 impl Bridge {
     /// The motion of the body that hangs there in which the link gives way, that
     /// proves the lower bound.
-    pub(super) fn mechanism(&self, structure: &Structure, block: &Block) -> Twist {
-        let frame = &self.frame;
-        let com = structure.bodies[block.bodies[0]].com;
-        let at_origin = Twist::new(frame.axes * self.failing.linear, frame.axes * self.failing.angular);
-        let here = at_origin.moved(&(com - frame.origin));
-        let sign = sign(frame, block);
-        Twist::new(here.linear * sign, here.angular * sign)
+    pub(super) fn mechanism(&self, structure: &Structure) -> Twist {
+        let com = structure.bodies[self.body].com;
+        let at_origin = Twist::new(self.axes * self.failing.linear, self.axes * self.failing.angular);
+        let here = at_origin.moved(&(com - self.origin));
+        Twist::new(here.linear * self.sign, here.angular * self.sign)
     }
 }
 
-/// Sign of the link's wrench on the block's body.
-fn sign(frame: &LinkFrame, block: &Block) -> f64 {
-    if frame.plus == Vertex::Body(block.bodies[0]) { 1.0 } else { -1.0 }
-}
-
-/// Assesses a block that consists of one link and one body that needs balance.
-pub(super) fn assess_bridge(structure: &Structure, block: &Block, loads: &[BodyLoad]) -> Bridge {
-    let (body, link) = (block.bodies[0], block.links[0]);
-    let frame = LinkFrame::new(structure, link);
-    let load = loads[body].moved(&(structure.bodies[body].com - frame.origin));
-    let turned = |v: &Vec3| frame.axes.tr_mul(v);
+/// Assesses a block that consists of `link` and `body`, which needs balance. Looks at nothing
+/// else of the structure: in a large one that would mean waiting for memory.
+pub(super) fn assess_bridge(structure: &Structure, link: Link, body: usize, loads: &[BodyLoad]) -> Bridge {
+    let (origin, axes) = placed(structure, link);
+    let gets_it = match link {
+        Link::Connection(i) => structure.connections[i].child == Anchor::Body(body),
+        Link::Contact(i) => structure.contacts[i].body == body,
+    };
+    let sign = if gets_it { 1.0 } else { -1.0 };
+    let load = loads[body].moved(&(structure.bodies[body].com - origin));
+    let turned = |v: &Vec3| axes.tr_mul(v);
     // The link holds what the body carries: the wrench on the plus side.
-    let wrench = Wrench::new(turned(&load.wrench.force), turned(&load.wrench.torque)) * -sign(&frame, block);
+    let wrench = Wrench::new(turned(&load.wrench.force), turned(&load.wrench.torque)) * -sign;
     match link {
         Link::Connection(i) => {
             let connector = &structure.connectors[structure.connections[i].connector];
             let error = load.error();
-            let turned_size = |v: &Vec3| frame.axes.abs().tr_mul(v);
+            let turned_size = |v: &Vec3| axes.abs().tr_mul(v);
             let error = WrenchError { force: turned_size(&error.force), torque: turned_size(&error.torque) };
             let demanded = demand(connector, &wrench, &error);
             let utilisation = demanded.utilisation;
-            Bridge { utilisation, wrench, force: Vec3::zeros(), failing: demanded.failing, frame }
+            let (force, failing) = (Vec3::zeros(), demanded.failing);
+            Bridge { link, body, utilisation, wrench, force, failing, origin, axes, sign }
         }
         Link::Contact(i) => {
             let friction = structure.contacts[i].friction;
@@ -64,8 +72,8 @@ pub(super) fn assess_bridge(structure: &Structure, block: &Block, loads: &[BodyL
             let escape = escape(&wrench, friction, force_slip, torque_slip);
             let utilisation = Bracket::exact(if escape.is_some() { f64::INFINITY } else { 0.0 });
             let held = Wrench::new(wrench.force, Vec3::zeros());
-            let force = frame.axes * held.force;
-            Bridge { utilisation, wrench: held, force, failing: escape.unwrap_or(Twist::ZERO), frame }
+            let (force, failing) = (axes * held.force, escape.unwrap_or(Twist::ZERO));
+            Bridge { link, body, utilisation, wrench: held, force, failing, origin, axes, sign }
         }
     }
 }

@@ -25,8 +25,9 @@ impl<const D: usize, const N: usize> Default for Family<D, N> {
 }
 
 impl<const D: usize, const N: usize> Family<D, N> {
-    /// Adds an element; its index.
-    pub(super) fn add(&mut self, part: &Part<D>, cost: f64, start: f64) -> usize {
+    /// Adds an element whose force and opening velocity begin at `start` times what is
+    /// typical of it; its index.
+    pub(super) fn add(&mut self, part: &Part<D>, cost: f64, [force, opening]: [f64; 2]) -> usize {
         let end = |end: &Option<(usize, [Rows<D>; 6])>| {
             end.as_ref().map(|(body, columns)| End { body: *body, columns: std::array::from_fn(|k| columns[k]) })
         };
@@ -34,7 +35,7 @@ impl<const D: usize, const N: usize> Family<D, N> {
             part.ends.each_ref().map(end),
             part.cone == Cone::Free,
             cost,
-            [start * part.start, part.start.recip()],
+            [force * part.start, opening / part.start],
         ));
         self.first.push(part.first);
         self.first.len() - 1
@@ -50,7 +51,19 @@ impl<const D: usize, const N: usize> Family<D, N> {
         }
     }
 
-    /// Adds the stiffness of its elements to the network's matrix.
+    /// Finds the scaling of its elements and adds their stiffness to the network's matrix; whether
+    /// there is a scaling.
+    pub(super) fn stiffen(&mut self, network: &mut Network<D>) -> bool {
+        for (index, element) in self.elements.iter_mut().enumerate() {
+            if !element.rescale() {
+                return false;
+            }
+            element.add_stiffness(self.reflected.get(index), network.matrix_mut());
+        }
+        true
+    }
+
+    /// Adds the stiffness of its elements, which have their scaling, to the network's matrix.
     pub(super) fn add_stiffness(&self, network: &mut Network<D>) {
         for (index, element) in self.elements.iter().enumerate() {
             element.add_stiffness(self.reflected.get(index), network.matrix_mut());

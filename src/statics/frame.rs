@@ -23,20 +23,10 @@ pub(super) struct LinkFrame {
 impl LinkFrame {
     pub(super) fn new(structure: &Structure, link: Link) -> Self {
         let [a, b] = ends(structure, link);
+        let (origin, axes) = placed(structure, link);
         match link {
-            Link::Connection(i) => {
-                let frame = &structure.connections[i].frame;
-                Self {
-                    plus: b,
-                    minus: a,
-                    origin: frame.translation.vector,
-                    axes: *frame.rotation.to_rotation_matrix().matrix(),
-                }
-            }
-            Link::Contact(i) => {
-                let contact = &structure.contacts[i];
-                Self { plus: a, minus: b, origin: contact.position, axes: axes_along(&contact.normal.normalize()) }
-            }
+            Link::Connection(_) => Self { plus: b, minus: a, origin, axes },
+            Link::Contact(_) => Self { plus: a, minus: b, origin, axes },
         }
     }
 
@@ -69,6 +59,20 @@ impl LinkFrame {
             relative.angular -= minus.angular;
         }
         Twist::new(self.axes.tr_mul(&relative.linear), self.axes.tr_mul(&relative.angular))
+    }
+}
+
+/// Origin and axes of a link's frame.
+pub(super) fn placed(structure: &Structure, link: Link) -> (Vec3, Matrix3<f64>) {
+    match link {
+        Link::Connection(i) => {
+            let frame = &structure.connections[i].frame;
+            (frame.translation.vector, *frame.rotation.to_rotation_matrix().matrix())
+        }
+        Link::Contact(i) => {
+            let contact = &structure.contacts[i];
+            (contact.position, axes_along(&contact.normal.normalize()))
+        }
     }
 }
 

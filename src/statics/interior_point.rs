@@ -69,7 +69,7 @@ impl<'p> InteriorPoint<'p> {
                 let network = Network::plain(program.pattern());
                 let preload = planar.preload.clone();
                 let mut system = System::new(&planar.parts, &planar.loads, preload, tie, network, inset, start);
-                let residuals = system.compare();
+                let residuals = system.advance([0.0; 2]);
                 (Balances::Plane(system, planar), residuals)
             }
             Err(why) => {
@@ -78,7 +78,7 @@ impl<'p> InteriorPoint<'p> {
                 let network = if in_series { Network::new(program, true) } else { Network::plain(program.pattern()) };
                 let (loads, preload) = (by_body(&program.load), by_body(&program.preload));
                 let mut system = System::new(&parts, &loads, preload, tie, network, inset, start);
-                let residuals = system.compare();
+                let residuals = system.advance([0.0; 2]);
                 (Balances::Space(system), residuals)
             }
         };
@@ -143,17 +143,17 @@ fn step<const D: usize>(system: &mut System<D>, residuals: &Residuals) -> Option
     let [x, s] = system.reach(1.0);
     let centring = (1.0 - x.min(s)).powi(3);
     let mu = centring * gap / system.degree();
-    system.correct(mu);
     let shorten = if system.is_linear() { SHORTEN_LINEAR } else { SHORTEN };
+    let left = (1.0 - shorten) * gap;
+    system.correct(mu, left);
     let mut steps = system.reach(shorten);
     if steps[0].min(steps[1]) < SHORT {
-        steps = system.centre(steps, mu, shorten);
+        steps = system.centre(steps, mu, left, shorten);
     }
     if !(steps[0].min(steps[1]) > LEAST_STEP) {
         return None;
     }
-    system.advance(steps);
-    Some(system.compare())
+    Some(system.advance(steps))
 }
 
 #[cfg(test)]

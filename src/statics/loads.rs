@@ -45,7 +45,16 @@ impl BodyLoad {
         *self += term.moved(lever);
     }
 
+    /// A weight, the product of mass and gravity.
+    fn weight(force: Vec3) -> Self {
+        let mut load = Self { force_size: force.abs(), ..Self::ZERO };
+        load.wrench.force = force;
+        load.rounding.force = load.force_size * f64::EPSILON;
+        load
+    }
+
     /// The same load about a point that `lever` leads from.
+    #[inline(always)]
     pub(super) fn moved(&self, lever: &Vec3) -> Self {
         let wrench = self.wrench.moved(lever);
         let products = cross_size(lever, &self.wrench.force.abs()) * 2.0 + wrench.torque.abs();
@@ -88,6 +97,7 @@ impl BodyLoad {
 }
 
 impl std::ops::AddAssign for BodyLoad {
+    #[inline(always)]
     fn add_assign(&mut self, other: Self) {
         let (before, other_force) = (self.wrench.force, other.wrench.force);
         self.wrench += other.wrench;
@@ -116,11 +126,7 @@ pub(super) fn cross_size(lever: &Vec3, force_size: &Vec3) -> Vec3 {
 
 /// Gravity and external loads on every body, about its centre of mass.
 pub(super) fn own_loads(structure: &Structure) -> Vec<BodyLoad> {
-    let weigh = |mass: f64| {
-        let mut load = BodyLoad::ZERO;
-        load.add(&(structure.gravity * mass), &Vec3::zeros(), &Vec3::zeros());
-        load
-    };
+    let weigh = |mass: f64| BodyLoad::weight(structure.gravity * mass);
     let mut loads: Vec<BodyLoad> = structure.bodies.iter().map(|body| weigh(body.mass)).collect();
     for load in &structure.loads {
         let com = structure.bodies[load.body].com;
@@ -135,9 +141,12 @@ pub(super) fn own_loads(structure: &Structure) -> Vec<BodyLoad> {
 pub(super) fn lump(structure: &Structure, blocks: &[Block], mut loads: Vec<BodyLoad>) -> Vec<BodyLoad> {
     for block in blocks.iter().rev() {
         if let Vertex::Body(root) = block.root {
-            let mut total = BodyLoad::ZERO;
-            for &body in &block.bodies {
-                total += loads[body].moved(&(structure.bodies[body].com - structure.bodies[root].com));
+            let com = structure.bodies[root].com;
+            let passed_on = |body: usize| loads[body].moved(&(structure.bodies[body].com - com));
+            let (first, others) = block.bodies.split_first().expect("a block has a body");
+            let mut total = passed_on(*first);
+            for &body in others {
+                total += passed_on(body);
             }
             loads[root] += total;
         }

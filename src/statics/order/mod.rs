@@ -96,7 +96,7 @@ impl Found {
     /// Adds the levels of a block; whether it can stand.
     fn add(&mut self, structure: &Structure, block: &Block, loads: &[BodyLoad]) -> bool {
         if let [link] = block.links[..] {
-            let utilisation = assess_bridge(structure, block, loads).utilisation;
+            let utilisation = assess_bridge(structure, link, block.bodies[0], loads).utilisation;
             if let (Link::Connection(i), true) = (link, utilisation.upper.is_finite()) {
                 self.note(utilisation, vec![i]);
             }

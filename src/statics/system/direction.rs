@@ -9,8 +9,8 @@ use super::super::families::each;
 use super::super::normal::Solution;
 use super::{System, Tie, work};
 
-/// Imbalance of a step, as a share of the complementarity that is left, above which
-/// it is corrected: below, it would change nothing.
+/// Imbalance of a step, as a share of the complementarity that is aimed at, or of the whole gap
+/// that is left if less is aimed at, above which it is corrected: below, it would change nothing.
 const REFINE: f64 = 1e-3;
 
 /// Rounds of correction, and the share of the imbalance that each must leave at most.
@@ -29,25 +29,26 @@ impl<const D: usize> System<D> {
         self.complete(rows, f64::INFINITY);
     }
 
-    /// The Newton direction to complementarity `mu`, after [`predict`](Self::predict).
-    pub(in super::super) fn correct(&mut self, mu: f64) {
+    /// The Newton direction to complementarity `mu`, after [`predict`](Self::predict). A gap of
+    /// about `left` will be left in any case.
+    pub(in super::super) fn correct(&mut self, mu: f64, left: f64) {
         let mut rows = self.unbalanced();
         each!(self.families, iter_mut, element => element.correct(mu, &mut rows));
         self.t.correct(mu, &mut []);
-        self.complete(rows, REFINE * mu);
+        self.complete(rows, REFINE * mu.max(left));
     }
 
     /// Bends the step towards the central path of complementarity `mu`, where it would leave
     /// it if it were somewhat longer than `reach`, as far as that makes it longer
-    /// (Gondzio 1996). The largest steps afterwards.
-    pub(in super::super) fn centre(&mut self, reach: [f64; 2], mu: f64, shorten: f64) -> [f64; 2] {
+    /// (Gondzio 1996). The largest steps afterwards; `left` as in [`correct`](Self::correct).
+    pub(in super::super) fn centre(&mut self, reach: [f64; 2], mu: f64, left: f64, shorten: f64) -> [f64; 2] {
         let wanted = reach.map(|step| (step + FURTHER).min(1.0));
         let dv = self.dv.clone();
         let changes: Vec<f64> = self.ties.iter().map(|tie| tie.change).collect();
         let mut rows = self.unbalanced();
         each!(self.families, iter_mut, element => element.centre(wanted, mu, &mut rows));
         self.t.centre(wanted, mu, &mut []);
-        self.complete(rows, REFINE * mu);
+        self.complete(rows, REFINE * mu.max(left));
         let bent = self.reach(shorten);
         if bent[0].min(bent[1]) > reach[0].min(reach[1]) {
             return bent;
@@ -67,22 +68,20 @@ impl<const D: usize> System<D> {
 
     /// Moves the bodies so that the forces of the step, `rows` without t's, balance, and
     /// again while more than `accuracy` is left and that helps.
-    fn complete(&mut self, mut rows: Vec<Rows<D>>, accuracy: f64) {
+    fn complete(&mut self, rows: Vec<Rows<D>>, accuracy: f64) {
         self.dv.fill([0.0; D]);
         for tie in &mut self.ties {
             tie.change = 0.0;
         }
-        self.move_bodies(&rows);
+        let mut rows = self.move_bodies(&rows);
         let mut before = f64::INFINITY;
         for _ in 0..if accuracy < f64::INFINITY { REFINEMENTS } else { 0 } {
-            rows = self.unbalanced();
-            each!(self.families, iter, element => element.push(&element.dx, &mut rows));
             let left = self.left(&rows);
             if left <= accuracy || !(left <= HELPS * before) {
                 return;
             }
             before = left;
-            self.move_bodies(&rows);
+            rows = self.move_bodies(&rows);
         }
     }
 
@@ -100,8 +99,9 @@ impl<const D: usize> System<D> {
         p + q + tie.preload * self.t.dx[0] - tie.lacking
     }
 
-    /// Adds the motion that the forces `rows`, without t's, give to the bodies.
-    fn move_bodies(&mut self, rows: &[Rows<D>]) {
+    /// Adds the motion that the forces `rows`, without t's, give to the bodies. The forces of the
+    /// step, without t's, afterwards.
+    fn move_bodies(&mut self, rows: &[Rows<D>]) -> Vec<Rows<D>> {
         let t = self.t.dx[0];
         let mut rows: Vec<Rows<D>> =
             rows.iter().zip(&self.preload).map(|(row, a)| std::array::from_fn(|k| row[k] + a[k] * t)).collect();
@@ -127,7 +127,13 @@ impl<const D: usize> System<D> {
             tie.change += change;
             (single[one].tied, single[other].tied) = (change, change);
         }
-        each!(self.families, iter_mut, element => element.follow(v));
+        let mut forces: Vec<Rows<D>> = self.lacking.iter().map(|lacking| lacking.map(|value| -value)).collect();
+        each!(self.families, iter_mut, element => {
+            element.follow(v);
+            if !element.in_chain {
+                element.push(&element.dx, &mut forces);
+            }
+        });
         // Forces of chains and of t are known better than their motion tells.
         self.t.ds[0] += opening;
         self.t.dx[0] -= strength;
@@ -151,10 +157,21 @@ impl<const D: usize> System<D> {
                 single[other].dx[0] -= left - (tie.resting - single[one].dx[0]);
             }
         }
+        for chain in &self.in_chains {
+            if let Some((index, _)) = chain.six {
+                let element = &self.families.six.elements[index];
+                element.push(&element.dx, &mut forces);
+            }
+            for &(index, _) in &chain.one {
+                let element = &self.families.one.elements[index];
+                element.push(&element.dx, &mut forces);
+            }
+        }
         for (dv, v) in self.dv.iter_mut().zip(v) {
             for (dv, v) in dv.iter_mut().zip(v) {
                 *dv += v;
             }
         }
+        forces
     }
 }

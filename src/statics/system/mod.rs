@@ -23,6 +23,13 @@ use super::parts::{Part, START};
 use super::second_order::dot;
 use super::series::flexibility_root;
 
+/// What all cones together dissipate at the start, at forces that are typical, in a program of at
+/// least so many bodies. In a motion that proves a bound it is 1; more begins farther inside the
+/// cones. If it grew with the number of cones, as 1 for each of few does no harm, so would the
+/// number of steps.
+const OPENING: f64 = 30.0;
+const LARGE: usize = 200;
+
 /// The row that ties two single variables, its unknown motion eliminated.
 struct Tie {
     /// Indices among the single variables; the second acts on no body.
@@ -89,7 +96,7 @@ pub(super) struct Residuals {
 impl<const D: usize> System<D> {
     /// The start on a program of `parts` with `loads` and the column `preload` of t by
     /// body, and entries `tie_preload` by tie row, the links of which `network` joins.
-    /// Opening velocities are inset by `inset` over all cones; forces and t begin at `start`
+    /// Opening velocities are inset by `inset` over all cones; forces and t begin at `force`
     /// times those that are typical.
     pub(super) fn new(
         parts: &[Part<D>],
@@ -98,10 +105,12 @@ impl<const D: usize> System<D> {
         tie_preload: impl Fn(usize) -> f64,
         network: Network<D>,
         inset: f64,
-        start: f64,
+        force: f64,
     ) -> Self {
         let heads = parts.iter().filter(|part| part.cone != Cone::Free).count() as f64;
         let links = parts.iter().map(|part| part.link + 1).max().unwrap_or(0);
+        let opening = if loads.len() < LARGE { 1.0 } else { (OPENING / heads).min(1.0) };
+        let start = [force, opening];
         let mut families = Families {
             one: Family::default(),
             two: Family::default(),
@@ -152,7 +161,7 @@ impl<const D: usize> System<D> {
         let nothing = vec![[0.0; D]; loads.len()];
         Self {
             families,
-            t: Element::new([None, None], false, 1.0, [start * START, START.recip()]),
+            t: Element::new([None, None], false, 1.0, [force * START, START.recip()]),
             ties,
             in_chains,
             chained,
@@ -176,9 +185,17 @@ impl<const D: usize> System<D> {
         self.degree
     }
 
-    /// Compares both sides of all equations.
-    pub(super) fn compare(&mut self) -> Residuals {
-        for tie in &self.ties {
+    /// Takes the shares x and s of the step, in `steps`, and compares both sides of all equations
+    /// there. In one go, as programs with thousands of links do not fit into caches.
+    pub(super) fn advance(&mut self, steps: [f64; 2]) -> Residuals {
+        self.t.advance(steps);
+        for (v, dv) in self.v.iter_mut().zip(&self.dv) {
+            for (v, dv) in v.iter_mut().zip(dv) {
+                *v += steps[1] * dv;
+            }
+        }
+        for tie in &mut self.ties {
+            tie.motion += steps[1] * tie.change;
             for index in tie.pair {
                 self.families.one.elements[index].tied = tie.motion;
             }
@@ -186,6 +203,7 @@ impl<const D: usize> System<D> {
         let mut forces = vec![[0.0; D]; self.v.len()];
         let (mut gap, mut opening, mut primal) = (0.0, 0.0_f64, 0.0);
         each!(self.families, iter_mut, element => {
+            element.advance(steps);
             element.compare(&self.v, &mut forces);
             gap += element.gap();
             primal += element.cost * element.x[0];
@@ -217,14 +235,18 @@ impl<const D: usize> System<D> {
 
     /// Finds the scaling of every cone and factorises there; whether it could.
     pub(super) fn factorise(&mut self) -> bool {
-        each!(self.families, iter_mut, element => {
-            if !element.rescale() {
-                return false;
-            }
-        });
-        if !self.t.rescale() {
+        let network = self.normal.network();
+        network.clear();
+        let Families { one, two, three, six } = &mut self.families;
+        let rescaled = one.elements.iter_mut().all(Element::rescale)
+            && two.stiffen(network)
+            && three.stiffen(network)
+            && six.stiffen(network)
+            && self.t.rescale();
+        if !rescaled {
             return false;
         }
+        // What ties leave of the stiffness is known with the scaling of both.
         for tie in &mut self.ties {
             let single = &mut self.families.one.elements;
             let [one, other] = tie.pair.map(|index| single[index].stiffness().0);
@@ -232,12 +254,7 @@ impl<const D: usize> System<D> {
             tie.share = one / tie.weight;
             single[tie.pair[0]].left = 1.0 - tie.share;
         }
-        let network = self.normal.network();
-        network.clear();
         self.families.one.add_stiffness(network);
-        self.families.two.add_stiffness(network);
-        self.families.three.add_stiffness(network);
-        self.families.six.add_stiffness(network);
         let (one, six) = (&self.families.one.elements, &self.families.six.elements);
         network.factorise_with(|link| {
             let chain = &self.in_chains[self.chained[link].expect("a link in a chain")];
@@ -267,20 +284,6 @@ impl<const D: usize> System<D> {
         let mut reach = self.t.reach(shorten, [1.0; 2]);
         each!(self.families, iter, element => reach = element.reach(shorten, reach));
         reach
-    }
-
-    /// Takes the shares `x` and `s` of the step.
-    pub(super) fn advance(&mut self, steps: [f64; 2]) {
-        each!(self.families, iter_mut, element => element.advance(steps));
-        self.t.advance(steps);
-        for (v, dv) in self.v.iter_mut().zip(&self.dv) {
-            for (v, dv) in v.iter_mut().zip(dv) {
-                *v += steps[1] * dv;
-            }
-        }
-        for tie in &mut self.ties {
-            tie.motion += steps[1] * tie.change;
-        }
     }
 
     /// The bodies' motion.
