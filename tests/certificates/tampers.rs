@@ -3,7 +3,7 @@
 //! mechanism) is none of them.
 
 use nalgebra::Unit;
-use steadfast::certificate::{Carried, Certificate};
+use steadfast::certificate::{Carried, Certificate, check};
 use steadfast::spatial::{Rotation, Twist, Vec3};
 use steadfast::statics::{Anchor, Bracket, Load, Model, Verdict};
 
@@ -101,10 +101,12 @@ fn lower_raised(mut c: Certificate, random: &mut Random) -> Option<Certificate> 
     (c.verdict != Verdict::WholeBodyUnstable).then_some(c)
 }
 
+/// Below what the forces prove, which can be less than is claimed.
 fn upper_lowered(mut c: Certificate, random: &mut Random) -> Option<Certificate> {
+    let proved = check(&c).ok()?.utilisation.upper;
     let upper = &mut c.utilisation.upper;
     let held = *upper > 0.0 && upper.is_finite();
-    *upper *= 1.0 - random.decade(1e-12, 0.9);
+    *upper = upper.min(proved) * (1.0 - random.decade(1e-12, 0.9));
     held.then_some(c)
 }
 
