@@ -37,7 +37,12 @@ impl<'n> Found<'n> {
     pub fn add(&mut self, plan: Plan, moves: Vec<Move>) -> bool {
         let is_front = self.objective == Objective::Pareto;
         let covers = |one: &Plan, other: &Plan| one.moves <= other.moves && by_margin(one, other).is_ge();
-        if self.plans.iter().any(|known| self.is_same(&known.1, &moves) || (is_front && covers(&known.0, &plan))) {
+        // Of a front, and where one plan is kept, nothing is there twice anyway; to compare thousands of moves takes long.
+        let is_known = |(known, by): &(Plan, Vec<Move>)| match is_front {
+            true => covers(known, &plan),
+            false => self.wanted > 1 && self.is_same(by, &moves),
+        };
+        if self.plans.iter().any(is_known) {
             return false;
         }
         if is_front {
