@@ -1,9 +1,10 @@
 //! Files of the RoFI platform: what each says, and that they say the same.
 
+#[path = "../support/rofi_pairs.rs"]
+mod rofi_pairs;
 mod step_model;
 
 use std::collections::BTreeSet;
-use std::path::PathBuf;
 
 use serde_json::{Value, json};
 use steadfast::io::{
@@ -12,6 +13,8 @@ use steadfast::io::{
 use steadfast::robot::linkage::Linkage;
 use steadfast::robot::rofi::CELL;
 use steadfast::spatial::{Pose, Vec3};
+
+use rofi_pairs::pairs;
 
 const FORMS: [Form; 3] = [Form::RofiWorld, Form::RofiText, Form::RofiVoxels];
 
@@ -80,19 +83,6 @@ fn canonical(voxels: &Value) -> BTreeSet<Shoe> {
 
 fn voxels(linkage: &Linkage) -> Value {
     serde_json::from_str(&write_rofi(linkage, Form::RofiVoxels).unwrap_or_else(|why| panic!("{why:?}"))).unwrap()
-}
-
-/// The pairs of worlds that are kept beside the repository, where they are.
-fn pairs() -> Vec<(String, Value)> {
-    let directory = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../shared/cases/rofi_plan");
-    let Ok(entries) = std::fs::read_dir(directory) else { return Vec::new() };
-    let mut paths: Vec<_> = entries.map(|entry| entry.unwrap().path()).collect();
-    paths.sort();
-    let read = |path: PathBuf| {
-        let value = serde_json::from_slice(&std::fs::read(&path).unwrap()).unwrap();
-        (path.file_stem().unwrap().to_string_lossy().into_owned(), value)
-    };
-    paths.into_iter().map(read).collect()
 }
 
 /// Some worlds of our own, in all three formats' reach.

@@ -5,7 +5,8 @@ use std::collections::HashSet;
 use steadfast::robot::linkage::{Connection, Linkage};
 use steadfast::robot::rofi::CELL;
 
-use crate::{canonical, pairs, read, voxels};
+use crate::rofi_pairs::pairs;
+use crate::{canonical, read, voxels};
 
 /// All states one step of the platform's planner away: a joint turns by 90 degrees, the other modules are divided between the
 /// sides in any way that holds together, facing docks are joined, and no two shoes share a cell.
