@@ -9,12 +9,15 @@
 //! that hang from its bodies lumped onto those bodies. A block of one edge (a
 //! bridge) needs no optimisation.
 //!
-//! Source: statics in two-terminal reductions is folklore; biconnected
-//! components after Hopcroft and Tarjan (1973), here without recursion so that
-//! chains of 100 000 bodies do not exhaust the stack.
+//! What hangs by one link alone is peeled off first (`leaves`): a tree is nothing but that,
+//! and a search through a large one would wait for memory at every step.
+//!
+//! Source: statics in two-terminal reductions is folklore.
 
-use smallvec::SmallVec;
+use smallvec::{SmallVec, smallvec};
 
+use super::biconnected::{Graph, Search};
+use super::leaves::{Leaf, Peeled};
 use super::structure::{Anchor, Structure};
 
 /// A vertex of the graph: the ground (the world and every fixed body), or a body.
@@ -77,42 +80,42 @@ pub(super) fn ends(structure: &Structure, link: Link) -> [Vertex; 2] {
 /// Cuts `structure` into blocks. Links between two immovable things carry
 /// nothing and belong to no block.
 pub(super) fn cut(structure: &Structure) -> Blocks {
+    let vertices = structure.bodies.len() + 1;
     // In a tree every body has a block of its own. What stays is taken from memory before what
     // does not, so that no gap is left in between.
     let found = Blocks { blocks: Vec::with_capacity(structure.bodies.len()), afloat: Vec::new() };
-    let graph = Graph::new(structure);
-    let mut search = Search::new(&graph, found);
+    let joined = Joined::new(structure);
+    let peeled = Peeled::new(vertices, joined.links());
+    let core = joined.links().filter(|(_, ends)| !ends.iter().any(|&end| peeled.is_leaf(end)));
+    let graph = Graph::new(vertices, &core.collect::<Vec<_>>());
+    let mut search = Search::new(&joined, &graph, found);
     search.grow(Vertex::Ground);
     for (i, body) in structure.bodies.iter().enumerate() {
-        if !body.fixed && search.is_new(number(Vertex::Body(i))) {
+        let number = number(Vertex::Body(i));
+        if !body.fixed && !peeled.is_leaf(number) && search.is_new(number) {
             search.found.afloat.push(i);
             search.grow(Vertex::Body(i));
         }
     }
     let mut found = search.found;
     found.blocks.reverse();
+    let hanging = peeled.leaves.iter().rev().map(|&Leaf { at, from, edge }| Block {
+        root: unnumber(from),
+        bodies: smallvec![at as usize - 1],
+        links: smallvec![joined.link(edge)],
+    });
+    found.blocks.extend(hanging);
     found
 }
 
-/// Adjacency in compressed rows: vertex 0 is the ground, `i + 1` is body `i`. Numbers are short,
-/// since a search through a large structure waits for memory.
-struct Graph {
-    /// Number of connections: links are numbered in the structure's order, contacts after them.
-    connections: usize,
-    /// Where the links of each vertex begin; one more for the end.
-    first: Vec<u32>,
-    /// Per vertex and link there: the link, and the vertex at its other end.
-    incident: Vec<[u32; 2]>,
-}
-
-fn number(vertex: Vertex) -> u32 {
+pub(super) fn number(vertex: Vertex) -> u32 {
     match vertex {
         Vertex::Ground => 0,
         Vertex::Body(i) => short(i + 1),
     }
 }
 
-fn unnumber(number: u32) -> Vertex {
+pub(super) fn unnumber(number: u32) -> Vertex {
     if number == 0 { Vertex::Ground } else { Vertex::Body(number as usize - 1) }
 }
 
@@ -121,9 +124,16 @@ pub(super) fn short(index: usize) -> u32 {
     u32::try_from(index).expect("memory ends long before four thousand million bodies or links")
 }
 
-impl Graph {
+/// The ends of all links, by number: vertex 0 is the ground, `i + 1` is body `i`; links are
+/// numbered in the structure's order, contacts after connections. Numbers are short, since going
+/// through a large structure means waiting for memory.
+pub(super) struct Joined {
+    connections: usize,
+    ends: Vec<[u32; 2]>,
+}
+
+impl Joined {
     fn new(structure: &Structure) -> Self {
-        let connections = structure.connections.len();
         // Asking every link's bodies whether they are fixed would mean waiting for memory.
         let numbers: Vec<u32> =
             structure.bodies.iter().enumerate().map(|(i, body)| if body.fixed { 0 } else { short(i + 1) }).collect();
@@ -133,133 +143,18 @@ impl Graph {
         };
         let connected = structure.connections.iter().map(|connection| [connection.parent, connection.child]);
         let touching = structure.contacts.iter().map(|contact| [Anchor::Body(contact.body), contact.against]);
-        let joined: Vec<[u32; 2]> = connected.chain(touching).map(|ends| ends.map(at)).collect();
-        let apart = |(_, [a, b]): &(usize, &[u32; 2])| a != b;
-        let mut first = vec![0; structure.bodies.len() + 2];
-        for (_, ends) in joined.iter().enumerate().filter(apart) {
-            for end in ends {
-                first[*end as usize + 1] += 1;
-            }
-        }
-        for i in 1..first.len() {
-            first[i] += first[i - 1];
-        }
-        let mut next = first.clone();
-        let mut incident = vec![[0; 2]; first[first.len() - 1] as usize];
-        for (index, &[a, b]) in joined.iter().enumerate().filter(apart) {
-            for (end, other) in [(a, b), (b, a)] {
-                let place = &mut next[end as usize];
-                incident[*place as usize] = [short(index), other];
-                *place += 1;
-            }
-        }
-        Self { connections, first, incident }
+        let ends = connected.chain(touching).map(|ends| ends.map(at)).collect();
+        Self { connections: structure.connections.len(), ends }
     }
 
-    fn link(&self, number: u32) -> Link {
+    /// The links, by number, that join two different vertices.
+    fn links(&self) -> impl Iterator<Item = (u32, [u32; 2])> {
+        (0..short(self.ends.len())).zip(self.ends.iter().copied()).filter(|(_, [a, b])| a != b)
+    }
+
+    pub(super) fn link(&self, number: u32) -> Link {
         let number = number as usize;
         number.checked_sub(self.connections).map_or(Link::Connection(number), Link::Contact)
-    }
-}
-
-/// A vertex on the way from the root to where the search is.
-struct Step {
-    at: u32,
-    /// The link over which it was entered; that of the root is none of the graph's.
-    over: u32,
-    /// Its next incident link, and the end of all.
-    next: u32,
-    end: u32,
-    /// Order of its entry, and the earliest entry that its subtree reaches over one back edge.
-    entered: u32,
-    low: u32,
-    /// How many links and bodies were open before it was entered.
-    links_before: usize,
-    bodies_before: usize,
-}
-
-struct Search<'g> {
-    graph: &'g Graph,
-    /// Per vertex the order of its entry from 1, 0 before.
-    entered: Vec<u32>,
-    clock: u32,
-    open_links: Vec<u32>,
-    open_bodies: Vec<usize>,
-    found: Blocks,
-}
-
-impl<'g> Search<'g> {
-    fn new(graph: &'g Graph, found: Blocks) -> Self {
-        Self {
-            graph,
-            entered: vec![0; graph.first.len() - 1],
-            clock: 0,
-            open_links: Vec::new(),
-            open_bodies: Vec::new(),
-            found,
-        }
-    }
-
-    fn is_new(&self, vertex: u32) -> bool {
-        self.entered[vertex as usize] == 0
-    }
-
-    /// Enters a vertex over a link; the step that leads on from there.
-    fn enter(&mut self, at: u32, over: u32) -> Step {
-        self.clock += 1;
-        let entered = self.clock;
-        self.entered[at as usize] = entered;
-        let (next, end) = (self.graph.first[at as usize], self.graph.first[at as usize + 1]);
-        let (links_before, bodies_before) = (self.open_links.len(), self.open_bodies.len());
-        Step { at, over, next, end, entered, low: entered, links_before, bodies_before }
-    }
-
-    /// Depth-first search from `root`. A block is complete, and is cut off, when
-    /// the search returns over its first edge; blocks farther from the root
-    /// complete earlier.
-    fn grow(&mut self, root: Vertex) {
-        let mut path = vec![self.enter(number(root), u32::MAX)];
-        while let Some(step) = path.last_mut() {
-            if step.next < step.end {
-                let [link, other] = self.graph.incident[step.next as usize];
-                step.next += 1;
-                if link == step.over {
-                    continue;
-                }
-                if self.is_new(other) {
-                    let step = self.enter(other, link);
-                    self.open_links.push(link);
-                    self.open_bodies.push(other as usize - 1);
-                    path.push(step);
-                } else if self.entered[other as usize] < step.entered {
-                    self.open_links.push(link);
-                    step.low = step.low.min(self.entered[other as usize]);
-                }
-                // Otherwise it leads to where the search came back from, and was followed from there.
-            } else {
-                let &mut Step { low, links_before, bodies_before, .. } = step;
-                path.pop();
-                if let Some(parent) = path.last_mut() {
-                    parent.low = parent.low.min(low);
-                    if low >= parent.entered {
-                        let root = parent.at;
-                        self.close(root, links_before, bodies_before);
-                    }
-                }
-            }
-        }
-    }
-
-    fn close(&mut self, root: u32, links_before: usize, bodies_before: usize) {
-        let numbers = &mut self.open_links[links_before..];
-        numbers.sort_unstable();
-        let links = numbers.iter().map(|&link| self.graph.link(link)).collect();
-        self.open_links.truncate(links_before);
-        let bodies = &mut self.open_bodies[bodies_before..];
-        bodies.sort_unstable();
-        let bodies = SmallVec::from_slice(bodies);
-        self.open_bodies.truncate(bodies_before);
-        self.found.blocks.push(Block { root: unnumber(root), bodies, links });
     }
 }
 

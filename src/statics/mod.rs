@@ -3,8 +3,8 @@
 //! Read in this order: [`Structure`] and [`Connector`] are the question,
 //! [`Assessment`] is the answer, [`assess`] the way from one to the other:
 //!
-//! 1. `blocks` cuts the structure where a wrench is known from balance, `loads`
-//!    lumps what hangs there;
+//! 1. `blocks` cuts the structure where a wrench is known from balance, after `leaves` has
+//!    peeled off what hangs by one link, and `loads` lumps what hangs there;
 //! 2. `closed_form` answers for bridges, with the connectors' `demand`;
 //! 3. `program` states every other block as a second-order cone program, `planar` finds
 //!    those that lie in a plane, and `interior_point` solves it, with `conic` behind it, a
@@ -23,6 +23,7 @@ mod assessment;
 mod attempts;
 mod balance;
 mod best;
+mod biconnected;
 mod blocks;
 mod bracket;
 mod chains;
@@ -43,6 +44,7 @@ mod frame;
 mod groups;
 mod hull;
 mod interior_point;
+mod leaves;
 mod load_range;
 mod loads;
 mod locked;

@@ -79,6 +79,9 @@ impl Merged {
 /// The connections that demand nothing whatever they carry.
 pub(super) fn unlimited(structure: &Structure) -> Vec<usize> {
     let kinds: Vec<bool> = structure.connectors.iter().map(|connector| connector.model.is_unlimited()).collect();
+    if !kinds.contains(&true) {
+        return Vec::new();
+    }
     (0..structure.connections.len()).filter(|&i| kinds[structure.connections[i].connector]).collect()
 }
 
