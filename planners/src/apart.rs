@@ -22,7 +22,7 @@ enum By {
 }
 
 /// Ways that turn out not to stand, before nothing is taken for wide enough any more at a glance.
-const MISTAKES: u32 = 256;
+const MISTAKES: u32 = 16;
 
 /// How closely transitions are looked at.
 #[derive(Clone, Copy, PartialEq, Eq)]
