@@ -11,7 +11,7 @@ use crate::search::{Bounds, PathOf, Search, is_wide_enough};
 use crate::space::Space;
 
 /// Paths that turn out not to stand, before nothing is taken for wide enough any more at a glance.
-pub(crate) const MISTAKES: u32 = 3;
+pub(crate) const MISTAKES: u32 = 16;
 
 /// Estimated cost of the whole path, then (later is better) the cost so far.
 type Priority = (Additive, u32);
