@@ -14,7 +14,7 @@ use crate::reconfigure::moves::Move;
 use crate::robot::{Cell, Occupancy, Placement};
 
 use super::journey::{Direction, Journey};
-use super::order::{Lessons, Rank, by_steps};
+use super::order::{Lessons, Order, Rank, by_steps};
 use super::shape::{Targets, bounds, distances, is_connected, lot, open, surplus, vacant};
 use super::walk::{Walk, reaches};
 use super::ways::Ways;
@@ -30,6 +30,9 @@ const PLACES: usize = 3;
 
 /// Carries that bring no more modules home than before, beside three for each that is not, before it counts as a dead end.
 const IDLE: usize = 12;
+
+/// How often the wait of a module that was tried in vain doubles.
+const LONGEST: u32 = 6;
 
 /// Carries per module, in all, after which an attempt gives up.
 const CARRIES: usize = 32;
@@ -75,7 +78,7 @@ pub struct Builder<'a, 'l> {
     targets: &'a Targets,
     /// Margin that is asked of every state.
     floor: f64,
-    seed: u64,
+    order: Order,
     bounds: [Cell; 2],
     layout: Layout,
     /// Where each module of the start is.
@@ -89,6 +92,8 @@ pub struct Builder<'a, 'l> {
     open: BTreeSet<Cell>,
     /// No layout is met twice.
     met: HashSet<Layout>,
+    /// Cells of modules that were tried in vain: how often, and how many carries it takes until others come first no more.
+    waiting: BTreeMap<Cell, (u32, usize)>,
     /// Dead ends that are still put up with.
     patience: usize,
     /// Questions that had been asked before, and walks that were looked at since.
@@ -103,7 +108,7 @@ impl<'a, 'l> Builder<'a, 'l> {
         domain: &'a Domain<'a>,
         journey: &'a Journey,
         lessons: &'l mut Lessons,
-        (floor, seed): (f64, u64),
+        (floor, order): (f64, Order),
         patience: usize,
     ) -> Self {
         let Journey { direction, layout, placements, targets } = journey;
@@ -113,7 +118,7 @@ impl<'a, 'l> Builder<'a, 'l> {
             direction: *direction,
             targets,
             floor,
-            seed,
+            order,
             bounds: bounds(cells, ROOM),
             placements: placements.clone(),
             carries: Vec::new(),
@@ -121,6 +126,7 @@ impl<'a, 'l> Builder<'a, 'l> {
             lessons,
             open: BTreeSet::new(),
             met: HashSet::from([layout.clone()]),
+            waiting: BTreeMap::new(),
             patience,
             solves_before: 0,
             walks: 0,
@@ -195,6 +201,7 @@ impl<'a, 'l> Builder<'a, 'l> {
     /// Undoes carries back to before the last ones that brought so many modules home, or all.
     fn undo(&mut self, homecomings: usize) {
         self.lessons.note(&self.layout, self.targets);
+        self.waiting.clear();
         let mut away = surplus(&self.layout, self.targets).len();
         let most = away + homecomings;
         while away < most
@@ -212,8 +219,9 @@ impl<'a, 'l> Builder<'a, 'l> {
         let is_at_home = |placed: &Placed| self.targets.get(&placed.cell) == Some(&placed.class);
         let mut covers: Vec<Placed> = self.layout.placed().iter().copied().filter(is_at_home).collect();
         let home: Vec<Cell> = covers.iter().map(|placed| placed.cell).collect();
-        let to_fill = self.lessons.filling_order(&home, &vacant, self.targets, self.seed);
-        let movers = self.lessons.freeing_order(&home, left, &self.layout, self.seed);
+        let to_fill = self.lessons.filling_order(&home, &vacant, self.targets, &self.order);
+        let mut movers = self.lessons.freeing_order(&home, left, &self.layout, &self.order);
+        movers.sort_by_key(|mover| self.is_waiting(mover.cell));
         if movers.iter().any(|&mover| self.carry(mover, &to_fill, ways, rests, watch)) {
             return true;
         }
@@ -221,7 +229,8 @@ impl<'a, 'l> Builder<'a, 'l> {
         let buried = left.iter().map(|placed| placed.cell).chain(vacant.keys().copied());
         let nearest = distances(buried, |cell| self.layout.is_filled(cell));
         covers.sort_by_key(|placed| {
-            (nearest.get(&placed.cell).copied().unwrap_or(u32::MAX), lot(self.seed, placed.cell))
+            let steps = nearest.get(&placed.cell).copied().unwrap_or(u32::MAX);
+            (self.is_waiting(placed.cell), steps, lot(self.order.seed, placed.cell))
         });
         if covers.iter().any(|&cover| self.carry(cover, &to_fill, ways, rests, watch)) {
             return true;
@@ -239,12 +248,12 @@ impl<'a, 'l> Builder<'a, 'l> {
 
     /// All cells around by how close they are to the empty cells of the goal.
     fn closer(&self, vacant: &BTreeMap<Cell, u16>) -> BTreeMap<Cell, Rank> {
-        by_steps(vacant.keys().copied(), self.bounds, self.seed)
+        by_steps(vacant.keys().copied(), self.bounds, &self.order)
     }
 
     /// All cells around that the goal leaves empty, by how close they are to it: for modules in the cells of others.
     fn aside(&self) -> BTreeMap<Cell, Rank> {
-        let mut cells = by_steps(self.targets.keys().copied(), self.bounds, self.seed);
+        let mut cells = by_steps(self.targets.keys().copied(), self.bounds, &self.order);
         cells.retain(|cell, _| !self.targets.contains_key(cell));
         cells
     }
@@ -277,9 +286,7 @@ impl<'a, 'l> Builder<'a, 'l> {
             let reached = walk.reached[1..].iter().copied().filter(|cell| !refused.contains(cell));
             let mut reached: Vec<Cell> = reached.filter(|cell| ranked.contains_key(cell)).collect();
             reached.sort_by_key(|cell| ranked[cell]);
-            let Some(to) = reached.into_iter().find(|&cell| self.suits(mover, cell, ranked, &rest)) else {
-                return false;
-            };
+            let Some(to) = reached.into_iter().find(|&cell| self.suits(mover, cell, ranked, &rest)) else { break };
             let path = walk.path(to);
             let pitch = self.domain.problem.start().pitch();
             let reaches = reaches(ways, &rest, mover.class, &path, pitch);
@@ -297,7 +304,23 @@ impl<'a, 'l> Builder<'a, 'l> {
                 }
             }
         }
+        self.wait(mover.cell);
         false
+    }
+
+    /// Lets others come before the module in a cell, twice as long each time.
+    fn wait(&mut self, cell: Cell) {
+        if self.is_waiting(cell) {
+            return;
+        }
+        let (times, until) = self.waiting.entry(cell).or_insert((0, 0));
+        *until = self.carries.len() + (1 << *times);
+        *times = (*times + 1).min(LONGEST);
+    }
+
+    /// Whether the module in a cell was tried in vain not long ago.
+    fn is_waiting(&self, cell: Cell) -> bool {
+        self.waiting.get(&cell).is_some_and(|&(_, until)| self.carries.len() < until)
     }
 
     /// Whether a module may be put into a cell.
@@ -359,6 +382,7 @@ impl<'a, 'l> Builder<'a, 'l> {
             }
         }
         self.met.insert(self.layout.clone());
+        self.waiting.remove(&to);
         self.carries.push(Carry { path, margin });
     }
 }

@@ -15,7 +15,7 @@ use crate::spatial::{Pose, Vec3};
 
 use super::builder::{Attempt, Builder};
 use super::journey::{Direction, Journey};
-use super::order::Lessons;
+use super::order::{First, Lessons, Order};
 use super::script::{Ends, write};
 use super::ways::Ways;
 
@@ -47,7 +47,8 @@ fn attempt(domain: &Domain, direction: Direction, seed: u64, patience: usize) ->
     let journey = journeys.iter().find(|journey| journey.direction == direction).unwrap();
     let (mut ways, mut rests) = (Ways::new(domain), Rests::new(problem.start()));
     let mut lessons = Lessons::default();
-    Builder::new(domain, journey, &mut lessons, (0.0, seed), patience).run(&mut ways, &mut rests, &mut |_| true)
+    let order = Order::new(First::Height, &problem.start().gravity, seed);
+    Builder::new(domain, journey, &mut lessons, (0.0, order), patience).run(&mut ways, &mut rests, &mut |_| true)
 }
 
 #[test]

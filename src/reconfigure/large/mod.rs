@@ -44,7 +44,7 @@ use effort::Effort;
 use found::Found;
 use journey::{Direction, Journey};
 use levels::Levels;
-use order::Lessons;
+use order::{First, Lessons, Order};
 pub use script::Ends;
 use script::write;
 pub use ways::{Ways, shift};
@@ -64,29 +64,30 @@ pub fn exact_modules(options: &Options) -> usize {
     if by_margin { EXACT_FOR_MARGIN } else { EXACT_FOR_MOVES }
 }
 
+/// In which way modules are carried, and what counts first.
+type Manner = (Direction, First);
+
 /// One attempt at one margin.
 #[derive(Clone, Copy)]
 struct Try {
-    /// Which way.
-    direction: Direction,
+    manner: Manner,
     /// Dead ends that are put up with.
     patience: usize,
     /// Work that it may take before there is a plan, for every module that is not in place.
     effort: u64,
 }
 
-/// Attempts at the required margin, each with another seed: both ways in turn, then both with more patience.
-const AT_REQUIRED: [Try; 4] = {
-    const fn attempt(direction: Direction, times: usize) -> Try {
-        Try { direction, patience: 10 * times, effort: 400 * times as u64 }
-    }
-    let (on, back) = (Direction::Forwards, Direction::Backwards);
-    [attempt(on, 1), attempt(back, 1), attempt(on, 3), attempt(back, 3)]
-};
+/// Attempts at the required margin, each with another seed: both ways in turn, then both in the other order with more patience.
+fn at_required(natural: First) -> [Try; 4] {
+    let attempt =
+        |manner: Manner, times: u32| Try { manner, patience: 10 * times as usize, effort: 400 * u64::from(times) };
+    let (on, back, other) = (Direction::Forwards, Direction::Backwards, natural.other());
+    [attempt((on, natural), 1), attempt((back, natural), 1), attempt((on, other), 3), attempt((back, other), 3)]
+}
 
-/// The only attempt at a larger margin, in some direction.
-const fn at_larger(direction: Direction) -> Try {
-    Try { direction, patience: 4, effort: 150 }
+/// The only attempt at a larger margin, in the manner that led to plans.
+const fn at_larger(manner: Manner) -> Try {
+    Try { manner, patience: 4, effort: 150 }
 }
 
 /// Decomposes a problem whose start and goal are known to be connected and stable enough.
@@ -123,16 +124,18 @@ pub fn decompose(
         oracle_solves: domain.oracle.solves() + asked.load(Ordering::Relaxed),
     };
     let mut levels = Levels::new(domain, required, ends.at_most());
-    let mut direction = Direction::Forwards;
+    let at_required = at_required(First::natural(&problem.start().environment));
+    let mut manner = at_required[0].manner;
     while let Some(floor) = levels.next(&ways) {
-        let larger = [at_larger(direction)];
-        let tries = if levels.is_required() { &AT_REQUIRED[..] } else { &larger };
+        let larger = [at_larger(manner)];
+        let tries = if levels.is_required() { &at_required[..] } else { &larger };
         let mut is_attained = false;
         // What one way found, the other one uses.
         let mut lessons = Lessons::default();
-        for (attempt, Try { direction: way, patience, effort: each }) in (0..).zip(tries.iter().copied()) {
+        for (attempt, Try { manner: tried, patience, effort: each }) in (0..).zip(tries.iter().copied()) {
+            let (way, first) = tried;
             let Some(journey) = journeys.iter().find(|journey| journey.direction == way) else { continue };
-            let seed = options.seed.wrapping_add(attempt);
+            let order = Order::new(first, &problem.start().gravity, options.seed.wrapping_add(attempt));
             let Some(limit) = effort.limit(each) else { break };
             let mut work = 0;
             let mut watch = |done: u64| {
@@ -149,15 +152,15 @@ pub fn decompose(
                 stopped.is_none()
             };
             let mut own = lessons.seen(way);
-            let builder = Builder::new(domain, journey, &mut own, (floor, seed), patience);
+            let builder = Builder::new(domain, journey, &mut own, (floor, order), patience);
             let found = builder.run(&mut ways, &mut rests, &mut watch);
             lessons = own.seen(way);
             effort.note(work, matches!(found, Attempt::Done(_)));
             match found {
                 Attempt::Done(carries) => {
                     is_attained = true;
-                    if way != direction {
-                        direction = way;
+                    if manner != tried {
+                        manner = tried;
                         levels.reopen();
                     }
                     let written = write(domain, &mut ways, &carries, &ends);
