@@ -76,9 +76,9 @@ impl<S: Space> Search<'_, S> {
     /// wide enough ([`Space::decide`]); one for the largest width can do neither. So some path comes first, as in
     /// [`Search::anytime_shortest`], and then the question is only whether a path is wider *by more than the tolerance
     /// admits*, again and again, each by `shortest` with a higher floor. Searched from both ends, the
-    /// last of them ends as soon as either end is exhausted. While that takes long, every other share of the work
-    /// goes to floors half-way between what is known to be possible and the bound: each finds a wider path, lowers the bound, or is
-    /// given up. What is left is the cheapest path of the best width, unless the last search has found that.
+    /// last of them ends as soon as either end is exhausted. While that takes long, other shares of the work
+    /// go to higher floors, first the bound itself, then half-way between what is known to be possible and the bound: each finds a
+    /// wider path, at least greedily, lowers the bound, or is given up. What is left is the cheapest path of the best width, unless the last search has found that.
     ///
     /// Every path that is better than those before it (wider, or as wide and cheaper) goes to `on_path`.
     ///
@@ -130,7 +130,7 @@ impl<S: Space> Search<'_, S> {
 
     /// Some path of a width of at least `floor`, found greedily; without a limit or a path there is none.
     fn hurry(&mut self, floor: f64) -> ShortestRun {
-        self.run_shortest(&Task { greed: GREED, ..Task::whole(floor, u32::MAX) })
+        self.run_shortest(&Task { greed: GREED, is_trusting: true, ..Task::whole(floor, u32::MAX) })
     }
 
     /// The least width that counts as more than `width`: half the tolerance above it, so that finding none as wide
@@ -225,18 +225,20 @@ where
                 Attempt::Ended(limit) => return Some(limit),
                 Attempt::Paused => {}
             }
+            // Many a bound is attained, since it is that of an end or of a transition that all paths share.
+            let mut floor = search.tie(self.at_most);
             loop {
-                let possible = self.possible(search);
-                let half_way = f64::midpoint(possible, self.at_most);
-                if !(half_way > search.wider(possible) && half_way.is_finite()) {
+                if !(floor > search.wider(self.possible(search)) && floor.is_finite()) {
                     break;
                 }
-                match self.attempt(search, half_way, share, shortest, on_path) {
+                match self.attempt(search, floor, share, shortest, on_path) {
                     Attempt::Wider | Attempt::Narrower => {}
                     Attempt::Widest => return None,
-                    Attempt::Ended(Limit::Precision) | Attempt::Paused => break,
+                    Attempt::Ended(Limit::Precision) | Attempt::Paused if floor < search.tie(self.at_most) => break,
+                    Attempt::Ended(Limit::Precision) | Attempt::Paused => {}
                     Attempt::Ended(limit) => return Some(limit),
                 }
+                floor = f64::midpoint(self.possible(search), self.at_most);
             }
             share = share.saturating_mul(2);
         }
@@ -263,11 +265,15 @@ where
             Outcome::Solved { proof, .. } | Outcome::OutOfBudget { proof, .. } => proof.width_at_most,
         });
         self.at_most = self.at_most.min(search.classes.width_at_most());
-        let wider = outcome.best().filter(|path| path.width.lower > self.found.width.lower).cloned();
+        let mut wider = outcome.best().filter(|path| path.width.lower > self.found.width.lower).cloned();
+        let mut is_by_cost = true;
+        if wider.is_none() && is_paused {
+            (wider, is_by_cost) = (self.hurried(search, floor, share), false);
+        }
         let is_wider = wider.is_some();
         if let (Some(path), Some(proof)) = (wider, outcome.proof()) {
             on_path(&path);
-            (self.found, self.proof, self.is_by_cost) = (path, *proof, true);
+            (self.found, self.proof, self.is_by_cost) = (path, *proof, is_by_cost);
         }
         match outcome.limit() {
             _ if self.is_widest(search) => Attempt::Widest,
@@ -276,6 +282,22 @@ where
             Some(limit) => Attempt::Ended(limit),
             None => Attempt::Narrower,
         }
+    }
+
+    /// A path as wide as `floor` that a greedy search finds, if it does within its share and the space has bounds on remaining
+    /// costs to be greedy by.
+    fn hurried<D: Space<State = S, Action = A>>(
+        &self,
+        search: &mut Search<'_, D>,
+        floor: f64,
+        share: u64,
+    ) -> Option<Path<S, A>> {
+        if search.graph.remaining(START) == 0 {
+            return None;
+        }
+        let (run, _) = search.sharing(share, |search| search.hurry(floor));
+        let path = search.path(&run.best?);
+        (path.width.lower > self.found.width.lower).then_some(path)
     }
 
     /// The least width that a wider path has, or a larger one that some path is known to have.

@@ -4,13 +4,13 @@
 use std::collections::{HashMap, VecDeque};
 
 use crate::budget::Limit;
-use crate::graph::{Arrow, End, START};
+use crate::graph::{Arrow, End, Glance, START};
 use crate::lattice::{Displacement, Lattice, difference, sum};
 use crate::outcome::Outcome;
 use crate::progress::Pass;
 use crate::registry::StateId;
 use crate::search::{Bounds, FIRST_SHARE, PathOf, Search, is_wide_enough};
-use crate::space::{Periodic, Width};
+use crate::space::Periodic;
 
 /// What tells classes apart.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -19,6 +19,18 @@ enum By {
     Kind,
     /// [`Periodic::class`].
     Class,
+}
+
+/// Ways that turn out not to stand, before nothing is taken for wide enough any more at a glance.
+const MISTAKES: u32 = 16;
+
+/// How closely transitions are looked at.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Care {
+    /// What a glance does not rule out counts as wide enough.
+    Glance,
+    /// All are decided.
+    Decision,
 }
 
 /// Whether there may be a path of some width.
@@ -75,11 +87,19 @@ struct Way {
     at: Displacement,
 }
 
+/// How a class is reached.
+#[derive(Clone, Copy)]
+struct Reached {
+    /// One displacement at which it is.
+    at: Displacement,
+    /// The last transition on the way there, unless the way begins there.
+    via: Option<Arrow>,
+}
+
 /// All classes that are reached from one end.
 struct Explorer {
     end: End,
-    /// One displacement at which each class is reached.
-    reached: HashMap<StateId, Displacement>,
+    reached: HashMap<StateId, Reached>,
     open: VecDeque<Way>,
     asked: u64,
     /// Upper bound on the widths of all transitions that were refused.
@@ -92,37 +112,33 @@ impl Explorer {
     }
 
     fn bytes(&self) -> usize {
-        self.open.len() * size_of::<Way>()
-            + self.reached.capacity() * 8 / 7 * (size_of::<(StateId, Displacement)>() + 1)
+        self.open.len() * size_of::<Way>() + self.reached.capacity() * 8 / 7 * (size_of::<(StateId, Reached)>() + 1)
     }
 }
 
 /// Explorations from both ends, and the displacements that ways from a class to itself add up to.
 struct Exploration {
     by: By,
+    care: Care,
     floor: f64,
     sides: [Explorer; 2],
     loops: Lattice,
     /// By how much the first class that both ends reached is displaced, seen from the one and from the other.
     gap: Option<Displacement>,
+    /// That class.
+    meeting: Option<StateId>,
     /// Whether some transition counted as wide enough although that could not be told.
     is_open: bool,
 }
 
 impl Exploration {
-    fn new(by: By, floor: f64) -> Self {
+    fn new(by: By, care: Care, floor: f64) -> Self {
         let sides = [Explorer::new(End::Start), Explorer::new(End::Goal)];
-        Exploration { by, floor, sides, loops: Lattice::default(), gap: None, is_open: false }
+        Exploration { by, care, floor, sides, loops: Lattice::default(), gap: None, meeting: None, is_open: false }
     }
 
-    /// Whether a transition counts as wide enough: it does where that cannot be told.
-    fn passes(&mut self, end: End, width: Width) -> bool {
-        let passes = is_wide_enough(width.upper, self.floor);
-        self.is_open |= passes && !is_wide_enough(width.lower, self.floor);
-        if !passes {
-            self.refuse(end, width.upper);
-        }
-        passes
+    fn bytes(&self) -> usize {
+        self.sides.iter().map(Explorer::bytes).sum()
     }
 
     fn refuse(&mut self, end: End, width_at_most: f64) {
@@ -180,21 +196,69 @@ impl<S: Periodic> Search<'_, S> {
         self.from_both_ends(floor)
     }
 
-    /// Whether a path may be as wide as `floor`: coarse classes first, since there are fewer.
+    /// Whether a path may be as wide as `floor`: coarse classes first, since there are fewer, and at a glance, since most of what
+    /// leads nowhere need not be known any better. Only a way that would join the ends is looked at closely, and again
+    /// another one as long as it does not stand.
     fn finding(&mut self, floor: f64) -> Finding {
-        match self.explore(By::Kind, floor) {
-            Finding::Joined | Finding::Open => self.explore(By::Class, floor),
-            finding => finding,
+        for (by, care) in [(By::Kind, Care::Glance), (By::Class, Care::Glance), (By::Class, Care::Decision)] {
+            let mut mistakes = 0;
+            loop {
+                let care = if mistakes < MISTAKES { care } else { Care::Decision };
+                let mut all = Exploration::new(by, care, floor);
+                let finding = self.explore(&mut all);
+                if !matches!(finding, Finding::Joined | Finding::Open) {
+                    return finding;
+                }
+                if by == By::Class && !all.is_open {
+                    return finding;
+                }
+                if self.stands(&all) {
+                    break;
+                }
+                mistakes += 1;
+            }
+        }
+        Finding::Open
+    }
+
+    /// Whether all transitions on the ways to the class in which the ends met may be wide enough, decided.
+    fn stands(&mut self, all: &Exploration) -> bool {
+        let mut stands = true;
+        for side in &all.sides {
+            let mut class = all.meeting;
+            while let Some(arrow) = class.and_then(|class| side.reached.get(&class)).and_then(|reached| reached.via) {
+                stands &= is_wide_enough(self.graph.decide(side.end, arrow, all.floor).upper, all.floor);
+                class = Some(arrow.from);
+            }
+        }
+        stands
+    }
+
+    /// Whether a transition counts as wide enough: it does where that cannot be told.
+    fn passes(&mut self, all: &mut Exploration, end: End, arrow: Arrow) -> bool {
+        if all.care == Care::Decision {
+            self.graph.decide(end, arrow, all.floor);
+        }
+        match self.graph.glance(end, arrow, all.floor) {
+            Glance::Wide => true,
+            Glance::Presumed | Glance::Undecided => {
+                all.is_open = true;
+                true
+            }
+            Glance::Narrow => {
+                all.refuse(end, self.graph.edge_seen_from(end, arrow).width.upper);
+                false
+            }
         }
     }
 
-    fn explore(&mut self, by: By, floor: f64) -> Finding {
+    fn explore(&mut self, all: &mut Exploration) -> Finding {
         if self.graph.is_goal(START) {
             return Finding::Joined;
         }
-        let mut all = Exploration::new(by, floor);
+        let (by, floor) = (all.by, all.floor);
         let (class, at) = self.class_of(by, START);
-        self.reach(&mut all, End::Start, class, at);
+        self.reach(all, End::Start, class, Reached { at, via: None });
         // Every way to a goal is a root of its own: what leads from one to another counts as a loop, which claims no less
         // than there is.
         let goals: Vec<StateId> = self.graph.space().goals().into_iter().map(|goal| self.graph.intern(goal)).collect();
@@ -206,7 +270,7 @@ impl<S: Periodic> Search<'_, S> {
                 if !self.graph.is_goal(last) && is_wide_enough(self.graph.decide(End::Goal, arrow, floor).upper, floor)
                 {
                     let (class, at) = self.class_of(by, last);
-                    self.reach(&mut all, End::Goal, class, at);
+                    self.reach(all, End::Goal, class, Reached { at, via: None });
                 }
             }
         }
@@ -225,35 +289,38 @@ impl<S: Periodic> Search<'_, S> {
             let end = side.end;
             let Way { arrow, class, at } = side.open.pop_front().expect("neither side is exhausted");
             // A loop that adds nothing is not asked for.
-            if side.reached.get(&class).is_some_and(|&known| all.loops.contains(difference(at, known))) {
+            if side.reached.get(&class).is_some_and(|known| all.loops.contains(difference(at, known.at))) {
                 continue;
             }
             side.asked += 1;
-            let bytes = all.sides.iter().map(Explorer::bytes).sum();
-            if let Some(limit) = self.tick(bytes) {
+            if let Some(limit) = self.tick(all.bytes()) {
                 return Finding::Stopped(limit);
             }
-            let width = self.graph.decide(end, arrow, floor);
-            if all.passes(end, width) {
-                self.reach(&mut all, end, class, at);
+            if self.passes(all, end, arrow) {
+                self.reach(all, end, class, Reached { at, via: Some(arrow) });
             }
         }
     }
 
     /// Books that a class is reached at some displacement, and opens the ways on from it if it is new.
-    fn reach(&mut self, all: &mut Exploration, end: End, class: StateId, at: Displacement) {
-        if let Some(&known) = all.sides[end as usize].reached.get(&class) {
-            all.loops.insert(difference(at, known));
+    fn reach(&mut self, all: &mut Exploration, end: End, class: StateId, reached: Reached) {
+        let at = reached.at;
+        if let Some(known) = all.sides[end as usize].reached.get(&class) {
+            all.loops.insert(difference(at, known.at));
             return;
         }
-        all.sides[end as usize].reached.insert(class, at);
-        if let Some(&other) = all.sides[end.other() as usize].reached.get(&class) {
-            let gap = difference(at, other);
+        all.sides[end as usize].reached.insert(class, reached);
+        if let Some(other) = all.sides[end.other() as usize].reached.get(&class) {
+            let gap = difference(at, other.at);
             let gap = if end == End::Start { gap } else { gap.map(|c| -c) };
             let first = *all.gap.get_or_insert(gap);
+            all.meeting.get_or_insert(class);
             all.loops.insert(difference(gap, first));
         }
-        self.monitor.progress.statistics.expanded += 1;
+        // Explorations begin anew again and again: what is known already is no work.
+        if !self.graph.is_expanded(end, class) {
+            self.monitor.progress.statistics.expanded += 1;
+        }
         match end {
             End::Start => self.graph.expand(class),
             End::Goal => self.graph.expand_into(class),

@@ -4,12 +4,13 @@ use std::collections::BTreeMap;
 
 use crate::algebra::Additive;
 use crate::budget::Limit;
-use crate::graph::{Arrow, DEAD_END, End, START};
+use crate::graph::{Arrow, DEAD_END, End, Glance, START};
 use crate::outcome::{Outcome, Path};
 use crate::progress::Pass;
 use crate::queue::Queue;
 use crate::registry::StateId;
 use crate::search::{Bounds, PathOf, Search, is_wide_enough};
+use crate::shortest::MISTAKES;
 use crate::space::{Reversible, Width};
 use crate::tree::Tree;
 
@@ -45,6 +46,8 @@ struct Side {
 /// Both sides and what joins them.
 struct Both {
     floor: f64,
+    /// Whether what a glance does not rule out counts as wide enough.
+    is_trusting: bool,
     sides: [Side; 2],
     bridges: Queue<Additive, Bridge>,
     /// Least cost that a path may have through a transition whose interval holds the floor.
@@ -69,7 +72,8 @@ impl<S: Reversible> Search<'_, S> {
     /// exhausted, which proves that there is no path.
     ///
     /// Each side is an A* of its own with its own estimates, opened again where those are inconsistent, and
-    /// the one that has opened fewer ways goes on. A path that is not found yet costs at least what either side estimates, and
+    /// the one that has opened fewer ways goes on. Transitions that a [glance](crate::Space::glance) does not rule out are taken for wide enough
+    /// until a path leads through them; where one of its transitions is not, the search begins anew, knowing that. A path that is not found yet costs at least what either side estimates, and
     /// at least the sum of what the two have spent until they meet.
     ///
     /// # Guarantees
@@ -80,7 +84,13 @@ impl<S: Reversible> Search<'_, S> {
     pub fn from_both_ends(&mut self, floor: f64) -> Outcome<PathOf<S>> {
         self.begin();
         self.monitor.progress.pass = Pass::Shortest;
-        let Run { best, limit, cost_at_least, width_at_most } = self.search_from_both_ends(floor);
+        let mut mistakes = 0;
+        let Run { best, limit, cost_at_least, width_at_most } = loop {
+            match self.search_from_both_ends(floor, mistakes < MISTAKES) {
+                Some(run) => break run,
+                None => mistakes += 1,
+            }
+        };
         self.monitor.progress.best_cost = best.as_ref().map(|path| path.cost);
         self.monitor.report();
         let found = best.as_ref().map(|path| path.width.lower.max(self.graph.cap()));
@@ -88,14 +98,15 @@ impl<S: Reversible> Search<'_, S> {
         self.conclude(best, limit, floor, bounds)
     }
 
-    fn search_from_both_ends(&mut self, floor: f64) -> Run<PathOf<S>> {
+    /// The search; `None` where a path did not stand when it was looked at closely.
+    fn search_from_both_ends(&mut self, floor: f64, is_trusting: bool) -> Option<Run<PathOf<S>>> {
         let cap = self.graph.cap();
         let goals: Vec<StateId> = self.graph.space().goals().into_iter().map(|goal| self.graph.intern(goal)).collect();
         if goals.contains(&START) {
             let best = Some(Path::new(Vec::new()));
-            return Run { best, limit: None, cost_at_least: 0, width_at_most: cap };
+            return Some(Run { best, limit: None, cost_at_least: 0, width_at_most: cap });
         }
-        let mut both = Both::new(floor);
+        let mut both = Both::new(floor, is_trusting);
         both.side(End::Start).labels.settle(START, Additive(0), None);
         for &goal in &goals {
             both.side(End::Goal).labels.settle(goal, Additive(0), None);
@@ -114,22 +125,19 @@ impl<S: Reversible> Search<'_, S> {
             if unseen == u32::MAX && bridge == u32::MAX {
                 let limit = (both.undecided < u32::MAX).then_some(Limit::Precision);
                 let width_at_most = both.undecided_width.max(floor.next_down()).min(cap);
-                return Run { best: None, limit, cost_at_least: both.undecided, width_at_most };
+                return Some(Run { best: None, limit, cost_at_least: both.undecided, width_at_most });
             }
             self.monitor.progress.cost_at_least = self.monitor.progress.cost_at_least.max(proved);
             if let Some(limit) = self.tick(both.bytes()) {
-                return Run { best: None, limit: Some(limit), cost_at_least: proved, width_at_most: cap };
+                return Some(Run { best: None, limit: Some(limit), cost_at_least: proved, width_at_most: cap });
             }
             if bridge <= unseen {
                 let Bridge { end, arrow, far } = both.bridges.pop().expect("it was seen").item;
                 let width = self.graph.decide(end, arrow, floor);
                 if is_wide_enough(width.lower, floor) {
-                    let Some(path) = self.joined(&both, end, arrow, far) else {
-                        // It did not stand when it was looked at closely.
-                        return self.search_from_both_ends(floor);
-                    };
+                    let path = self.joined(&both, end, arrow, far)?;
                     let limit = (proved < path.cost).then_some(Limit::Precision);
-                    return Run { best: Some(path), limit, cost_at_least: proved, width_at_most: cap };
+                    return Some(Run { best: Some(path), limit, cost_at_least: proved, width_at_most: cap });
                 }
                 both.note_undecided(width, bridge);
             } else {
@@ -148,12 +156,16 @@ impl<S: Reversible> Search<'_, S> {
         if !is_better(both.side(end).labels.value(far)) || both.is_finished(end.other(), far) {
             return;
         }
-        let width = self.graph.decide(end, arrow, both.floor);
-        if is_wide_enough(width.lower, both.floor) {
-            both.side(end).labels.settle(far, Additive(cost), Some(arrow));
-            self.open(both, end, far);
-        } else {
-            both.note_undecided(width, estimate);
+        if !both.is_trusting {
+            self.graph.decide(end, arrow, both.floor);
+        }
+        match self.graph.glance(end, arrow, both.floor) {
+            Glance::Wide | Glance::Presumed => {
+                both.side(end).labels.settle(far, Additive(cost), Some(arrow));
+                self.open(both, end, far);
+            }
+            Glance::Undecided => both.note_undecided(self.graph.edge_seen_from(end, arrow).width, estimate),
+            Glance::Narrow => {}
         }
     }
 
@@ -193,7 +205,8 @@ impl<S: Reversible> Search<'_, S> {
         let before = start.labels.way_to(first).into_iter().map(|arrow| (End::Start, arrow));
         let after = goal.labels.way_to(last).into_iter().rev().map(|arrow| (End::Goal, arrow));
         let way: Vec<(End, Arrow)> = before.chain([(end, arrow)]).chain(after).collect();
-        let stands = way.iter().all(|&(end, arrow)| self.all_stand(end, &[arrow], both.floor));
+        let are_decided = self.are_decided(&way, both.floor);
+        let stands = are_decided && way.iter().all(|&(end, arrow)| self.all_stand(end, &[arrow], both.floor));
         stands.then(|| {
             let path = Path::new(way.iter().map(|&(end, arrow)| self.step(end, arrow)).collect());
             self.found(path)
@@ -245,9 +258,16 @@ impl Side {
 }
 
 impl Both {
-    fn new(floor: f64) -> Self {
+    fn new(floor: f64, is_trusting: bool) -> Self {
         let sides = [Side::new(), Side::new()];
-        Both { floor, sides, bridges: Queue::new(), undecided: u32::MAX, undecided_width: f64::NEG_INFINITY }
+        Both {
+            floor,
+            is_trusting,
+            sides,
+            bridges: Queue::new(),
+            undecided: u32::MAX,
+            undecided_width: f64::NEG_INFINITY,
+        }
     }
 
     fn side(&mut self, end: End) -> &mut Side {

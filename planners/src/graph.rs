@@ -38,12 +38,27 @@ pub(crate) struct Edge<A> {
     pub width: Width,
     /// The interval is as tight as the domain can make it.
     tight: bool,
+    /// The largest floor at which a glance did not rule it out.
+    glanced: f64,
+}
+
+/// What a glance at a transition tells of it, for some floor.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Glance {
+    /// It is wide enough.
+    Wide,
+    /// It is not.
+    Narrow,
+    /// It has not been asked, but it may be.
+    Presumed,
+    /// It has been asked, and cannot be told from the floor.
+    Undecided,
 }
 
 impl<A> Edge<A> {
     fn new(action: A, to: StateId, cost: u32, width_at_most: f64) -> Self {
         let width = Width { lower: f64::NEG_INFINITY, upper: upper_or_unknown(width_at_most) };
-        Edge { action, to, cost, width, tight: false }
+        Edge { action, to, cost, width, tight: false, glanced: f64::NEG_INFINITY }
     }
 
     /// Whether nothing is left to certify at `floor`.
@@ -182,26 +197,72 @@ impl<'a, S: Space> Graph<'a, S> {
         self.ask(end, arrow, floor, true)
     }
 
+    /// Whether a transition may be wide enough, by no more than a glance where the domain is quicker with that.
+    pub fn glance(&mut self, end: End, arrow: Arrow, floor: f64) -> Glance {
+        let edge = self.edge_seen_from(end, arrow);
+        if !edge.is_decided(floor) && edge.glanced < floor {
+            let (from, to) = self.between(end, arrow.from, edge.to);
+            match self.space.glance(from, &edge.action, to, floor) {
+                Some(upper) => {
+                    let edge = self.edge_mut(end, arrow);
+                    edge.glanced = floor;
+                    edge.width.upper = edge.width.upper.min(upper_or_unknown(upper));
+                    edge.width.lower = edge.width.lower.min(edge.width.upper);
+                }
+                None => {
+                    self.decide(end, arrow, floor);
+                }
+            }
+        }
+        let edge = self.edge_seen_from(end, arrow);
+        if is_wide_enough(edge.width.lower, floor) {
+            Glance::Wide
+        } else if !is_wide_enough(edge.width.upper, floor) {
+            Glance::Narrow
+        } else if edge.is_decided(floor) {
+            Glance::Undecided
+        } else {
+            Glance::Presumed
+        }
+    }
+
     /// Width of a transition, as tight as it can be.
     pub fn tighten(&mut self, end: End, arrow: Arrow) -> Width {
         self.ask(end, arrow, f64::NEG_INFINITY, false)
     }
 
     fn ask(&mut self, end: End, arrow: Arrow, floor: f64, has_decided_only: bool) -> Width {
+        let edge = self.edge_seen_from(end, arrow);
+        let is_known = if has_decided_only { edge.is_decided(floor) } else { edge.is_certified(floor) };
+        if is_known {
+            return edge.width;
+        }
+        let (from, to) = self.between(end, arrow.from, edge.to);
+        let decided = if has_decided_only { self.space.decide(from, &edge.action, to, floor) } else { None };
+        let is_decision = decided.is_some();
+        let answer = decided.unwrap_or_else(|| self.space.certify(from, &edge.action, to, floor));
+        self.certified += 1;
+        let edge = self.edge_mut(end, arrow);
+        edge.learn(answer, floor, is_decision);
+        edge.width
+    }
+
+    /// Where a transition comes from and where it leads to, by the ends of its arrow seen from an end.
+    fn between(&self, end: End, near: StateId, far: StateId) -> (&S::State, &S::State) {
+        let [near, far] = [near, far].map(|id| self.registry.state(id));
+        if end == End::Start { (near, far) } else { (far, near) }
+    }
+
+    fn edge_mut(&mut self, end: End, arrow: Arrow) -> &mut Edge<S::Action> {
         let edges = if end == End::Start { &mut self.edges } else { &mut self.edges_into };
         let edges = edges[arrow.from as usize].as_mut().expect("arrows leave expanded states");
-        let edge = &mut edges[arrow.index as usize];
-        let is_known = if has_decided_only { edge.is_decided(floor) } else { edge.is_certified(floor) };
-        if !is_known {
-            let [near, far] = [arrow.from, edge.to].map(|id| self.registry.state(id));
-            let (from, to) = if end == End::Start { (near, far) } else { (far, near) };
-            let decided = if has_decided_only { self.space.decide(from, &edge.action, to, floor) } else { None };
-            let is_decision = decided.is_some();
-            let answer = decided.unwrap_or_else(|| self.space.certify(from, &edge.action, to, floor));
-            self.certified += 1;
-            edge.learn(answer, floor, is_decision);
-        }
-        edge.width
+        &mut edges[arrow.index as usize]
+    }
+
+    /// Whether the transitions seen from a state are known.
+    pub fn is_expanded(&self, end: End, id: StateId) -> bool {
+        let edges = if end == End::Start { &self.edges } else { &self.edges_into };
+        edges.get(id as usize).is_some_and(Option::is_some)
     }
 
     pub fn states(&self) -> usize {

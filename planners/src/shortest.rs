@@ -2,13 +2,16 @@
 
 use crate::algebra::{Additive, PathValue};
 use crate::budget::Limit;
-use crate::graph::{Arrow, DEAD_END, End, START};
+use crate::graph::{Arrow, DEAD_END, End, Glance, START};
 use crate::outcome::Outcome;
 use crate::progress::Pass;
 use crate::queue::Queue;
 use crate::registry::StateId;
 use crate::search::{Bounds, PathOf, Search, is_wide_enough};
 use crate::space::Space;
+
+/// Paths that turn out not to stand, before nothing is taken for wide enough any more at a glance.
+pub(crate) const MISTAKES: u32 = 16;
 
 /// Estimated cost of the whole path, then (later is better) the cost so far.
 type Priority = (Additive, u32);
@@ -33,6 +36,8 @@ pub(crate) struct Task<'t> {
     /// How much the bound on the remaining cost counts, at least 1. Above 1 a path is found after fewer
     /// expansions and costs at most so many times the least.
     pub greed: u32,
+    /// Whether transitions that a glance does not rule out are taken for wide enough until a path leads through them.
+    pub is_trusting: bool,
     /// States that the rest may not visit.
     pub avoid: &'t [StateId],
     /// Transitions out of `from` that the rest may not begin with.
@@ -44,7 +49,17 @@ pub(crate) struct Task<'t> {
 impl Task<'_> {
     /// All paths from the start.
     pub fn whole(floor: f64, below: u32) -> Self {
-        Task { from: START, spent: 0, floor, below, greed: 1, avoid: &[], forbid: &[], held_bytes: 0 }
+        Task {
+            from: START,
+            spent: 0,
+            floor,
+            below,
+            greed: 1,
+            is_trusting: false,
+            avoid: &[],
+            forbid: &[],
+            held_bytes: 0,
+        }
     }
 
     fn is_whole(&self) -> bool {
@@ -94,15 +109,25 @@ impl<S: Space> Search<'_, S> {
 
     /// The search; finding nothing without a limit is a proof that there is nothing.
     pub(crate) fn run_shortest(&mut self, task: &Task<'_>) -> ShortestRun {
+        let mut mistakes = 0;
         loop {
-            let run = self.a_star(task);
+            let run = self.a_star(task, task.is_trusting && mistakes < MISTAKES);
             self.book(self.tree.bytes() + task.held_bytes);
-            // What was decided has to stand when it is looked at closely.
+            // What was presumed or decided has to stand when it is looked at closely.
             let arrows = run.best.as_deref().unwrap_or_default();
-            if self.all_stand(End::Start, arrows, task.floor) {
+            let way = arrows.iter().map(|&arrow| (End::Start, arrow)).collect::<Vec<_>>();
+            if self.are_decided(&way, task.floor) && self.all_stand(End::Start, arrows, task.floor) {
                 return run;
             }
+            mistakes += 1;
         }
+    }
+
+    /// Whether all transitions of a way are decided to be wide enough. All of them are asked, so that none that is not is
+    /// presumed again.
+    pub(crate) fn are_decided(&mut self, way: &[(End, Arrow)], floor: f64) -> bool {
+        way.iter()
+            .fold(true, |all, &(end, arrow)| is_wide_enough(self.graph.decide(end, arrow, floor).lower, floor) && all)
     }
 
     /// Whether transitions that were decided to be wide enough are so when they are as tight as they can be.
@@ -110,7 +135,7 @@ impl<S: Space> Search<'_, S> {
         arrows.iter().all(|&arrow| is_wide_enough(self.graph.tighten(end, arrow).lower, floor))
     }
 
-    fn a_star(&mut self, task: &Task<'_>) -> ShortestRun {
+    fn a_star(&mut self, task: &Task<'_>, is_trusting: bool) -> ShortestRun {
         self.tree.clear();
         self.tree.settle(task.from, Additive(task.spent), None);
         if self.graph.is_goal(task.from) {
@@ -140,12 +165,16 @@ impl<S: Space> Search<'_, S> {
             if let Some(limit) = self.tick(open.bytes() + self.tree.bytes() + task.held_bytes) {
                 return ShortestRun { best: None, limit: Some(limit), cost_at_least, beyond };
             }
-            let width = self.graph.decide(End::Start, arrow, task.floor);
-            if !is_wide_enough(width.lower, task.floor) {
-                if is_wide_enough(width.upper, task.floor) {
+            if !is_trusting {
+                self.graph.decide(End::Start, arrow, task.floor);
+            }
+            match self.graph.glance(End::Start, arrow, task.floor) {
+                Glance::Wide | Glance::Presumed => {}
+                Glance::Undecided => {
                     undecided = undecided.min(estimate);
+                    continue;
                 }
-                continue;
+                Glance::Narrow => continue,
             }
             self.tree.settle(to, Additive(cost), Some(arrow));
             if self.graph.is_goal(to) {

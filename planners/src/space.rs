@@ -88,6 +88,14 @@ pub trait Space: Sync {
         None
     }
 
+    /// Upper bound on the width of a transition by a look that takes much less than to decide it, `INFINITY` where that shows
+    /// nothing. It is of use where it is below `floor`. `None` where nothing is that much cheaper. Searches take a transition for wide enough
+    /// that a glance does not rule out, until something depends on it.
+    fn glance(&self, from: &Self::State, action: &Self::Action, to: &Self::State, floor: f64) -> Option<f64> {
+        let _ = (from, action, to, floor);
+        None
+    }
+
     /// Admissible lower bound on the cost from `state` to a goal; `None` when
     /// it is proved that no goal can be reached from it. It may be
     /// inconsistent. At a goal it is taken to be 0 without asking.

@@ -21,6 +21,14 @@ use super::problem::Problem;
 use super::recollection::Recollection;
 use super::ways::{fitting, fitting_of};
 
+/// The worst moment of a move for the module's own hold.
+#[derive(Clone, Copy, Debug)]
+struct Own {
+    /// Upper bound on its margin then, and so on the move's.
+    at_most: f64,
+    phase: f64,
+}
+
 /// A problem with everything that answers questions about its states.
 pub struct Domain<'a> {
     /// The problem.
@@ -50,6 +58,8 @@ pub struct Domain<'a> {
     pub(super) recollection: Recollection,
     /// Bounds on the margins of rotations.
     at_most: Memo<Neighbourhood, f64>,
+    /// Where the module of a rotation holds worst, and its margin then.
+    own_worst: Memo<Neighbourhood, Own>,
 }
 
 impl<'a> Domain<'a> {
@@ -72,6 +82,7 @@ impl<'a> Domain<'a> {
             bounds: Memo::new(),
             recollection: Recollection::default(),
             at_most: Memo::new(),
+            own_worst: Memo::new(),
         }
     }
 
@@ -97,7 +108,12 @@ impl<'a> Domain<'a> {
         let at_most = 8 * size_of::<(Cell, usize)>();
         let at_rest = self.at_rest.bytes(at_rest) + self.courses.bytes(at_rest) + self.bounds.bytes(at_rest);
         let held = self.held.lock().expect("no thread panics while it asks how modules are held").bytes();
-        self.clear.bytes(0) + at_rest + self.at_most.bytes(at_most) + self.recollection.bytes() + held
+        self.clear.bytes(0)
+            + at_rest
+            + self.at_most.bytes(at_most)
+            + self.own_worst.bytes(at_most)
+            + self.recollection.bytes()
+            + held
     }
 
     /// The moves that fit among the modules, hit neither ground nor obstacles and are
@@ -186,6 +202,23 @@ impl<'a> Domain<'a> {
         self.at_most.get(pivot, |_| self.oracle.at_most(self.problem.placements(layout), step))
     }
 
+    /// Like [`at_most`](Self::at_most), of all samples of the module's own hold instead of a few: as tight as the hold alone
+    /// can tell. Every margin of a move takes the worst of these samples into account.
+    pub fn own_at_most(&self, layout: &Layout, step: Move) -> f64 {
+        self.own_worst(layout, step).map_or(f64::INFINITY, |own| own.at_most)
+    }
+
+    fn own_worst(&self, layout: &Layout, step: Move) -> Option<Own> {
+        if !self.stability || self.forgets || self.is_along_environment(step) {
+            return None;
+        }
+        let pivot = Neighbourhood::new(self.problem, layout, step)?;
+        Some(self.own_worst.get(pivot, |_| {
+            let worst = self.oracle.own_worst(self.problem.placements(layout), step);
+            Own { at_most: worst.margin.upper, phase: worst.instant.phase() }
+        }))
+    }
+
     /// Whether the module of a rotation may touch ground or an obstacle strictly between its
     /// ends: one that reaches into the smallest box around all it sweeps, or
     /// touches that box across the axis. Its other sides the module reaches at the ends only.
@@ -222,7 +255,17 @@ impl<'a> Domain<'a> {
     /// Stops as soon as one state's margin is proved to be below `floor`; then
     /// the lower end is minus infinity.
     pub fn of_move(&self, layout: &Layout, bonds: &[Bond], step: Move, floor: f64) -> Worst {
-        let ask = || self.oracle.of_move(self.problem.placements(layout), bonds, step, floor);
+        let ask = || {
+            let placements = self.problem.placements(layout);
+            let worst = self.oracle.of_move(placements.clone(), bonds, step, floor);
+            match self.own_worst(layout, step) {
+                // What it hangs on may be worst at a moment that the samples of the whole robot leave out.
+                Some(own) if own.at_most < worst.margin.upper && !worst.is_out(floor) => {
+                    worst.or_worse(self.oracle.of_phase(placements, bonds, step, own.phase))
+                }
+                _ => worst,
+            }
+        };
         let by_its_hold = || {
             let mut held = self.held.lock().expect("no thread panics while it asks how modules are held");
             let is_along = self.is_beside_environment(step);

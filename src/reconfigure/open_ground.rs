@@ -123,6 +123,20 @@ impl Space for OpenGround<'_> {
         self.width(from, step, (Wanted::Side, floor), ask)
     }
 
+    fn glance(&self, from: &State, action: &Action, to: &State, floor: f64) -> Option<f64> {
+        let Action::Move(step) = *action else { return None };
+        if !self.domain.stability || floor == f64::NEG_INFINITY {
+            return None;
+        }
+        let (layout, step) = self.symmetry.kind_of_move(from.layout(), step);
+        let own = self.domain.own_at_most(&layout, step);
+        if own < floor {
+            return Some(own);
+        }
+        let settled = self.settled_out(to, floor);
+        Some(settled.map_or(f64::INFINITY, |out| out.upper))
+    }
+
     fn remaining_cost(&self, state: &State) -> Option<u32> {
         self.space.remaining_cost(state)
     }

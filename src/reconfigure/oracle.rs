@@ -135,6 +135,24 @@ impl<'a> Oracle<'a> {
         self.timed(|| margins.fold(f64::INFINITY, f64::min))
     }
 
+    /// The worst of all samples of a move with all modules but the moving one held immovably.
+    pub fn own_worst(&self, before: Vec<Placement>, step: Move) -> Worst {
+        let course = Course::new(before, &[], step, self.pitch).expect("a legal move has a module and a support");
+        let ask = |phase: f64| {
+            let state = course.at(phase);
+            self.read(&self.assembler.assemble_alone(&state), &state, Instant::Phase(phase))
+        };
+        let worst = || worst::of_course(sampling::of(step), &ask, f64::NEG_INFINITY, &self.solves);
+        self.timed(worst).unwrap_or_else(|fallen| fallen)
+    }
+
+    /// Margin of a move at one phase. `bonds` are the connections before it.
+    pub fn of_phase(&self, before: Vec<Placement>, bonds: &[Bond], step: Move, phase: f64) -> Worst {
+        let course = Course::new(before, bonds, step, self.pitch).expect("a legal move has a module and a support");
+        self.solves.fetch_add(1, Ordering::Relaxed);
+        self.timed(|| self.ask(&course.at(phase), Instant::Phase(phase)))
+    }
+
     /// Margin of the transient states of a move with all modules but the moving one held immovably. `on_sample` is given each
     /// phase with what the module does to the others then, in the field that proves its margin. `None` where the module falls.
     pub fn own_course(

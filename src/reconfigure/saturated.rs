@@ -14,7 +14,7 @@ use std::sync::{Mutex, MutexGuard};
 
 use planners::{Reversible, Space, Transition, Width};
 
-use crate::robot::Motion;
+use crate::robot::{Cell, Motion};
 
 use super::carried::Carried;
 use super::domain::{Domain, width};
@@ -23,6 +23,7 @@ use super::heuristic::Targets;
 use super::layout::{Bond, Layout};
 use super::moves::Move;
 use super::oracle::Worst;
+use super::pieces::Pieces;
 
 /// Placements, all connections engaged; or the goal with its own connections.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -101,12 +102,24 @@ impl<'a> Saturated<'a> {
         self.carried.lock().expect("no thread panics while it asks what is carried")
     }
 
-    /// The moves out of a layout, in a fixed order.
+    /// The moves out of a layout through which the robot holds together, in a fixed order.
     fn moves(&self, layout: &Layout) -> Vec<Move> {
         let mut moves = self.domain.moves(layout);
+        if !self.domain.problem.must_stay_connected() {
+            return moves;
+        }
+        let bonds = layout.touching();
+        let mut others: Option<(Cell, Pieces)> = None;
         moves.retain(|&step| {
-            let bonds = kept(layout, step);
-            self.domain.is_connected(layout, &bonds) && self.domain.stays_connected(layout, &bonds, step)
+            // The moves of a module follow each other.
+            if others.as_ref().is_none_or(|(cell, _)| *cell != step.from) {
+                others = Some((step.from, Pieces::new(layout, &bonds, step.from)));
+            }
+            let Some((_, pieces)) = &others else { return false };
+            let before = bonds.iter().filter(|bond| bond.touches(step.from) && step.may_keep(**bond));
+            let before = before.flat_map(|bond| bond.cells()).collect();
+            let mut moments = std::iter::once(before).chain(step.holders(layout));
+            moments.all(|holders: Vec<Cell>| pieces.are_joined_by(layout, holders))
         });
         moves
     }
@@ -174,6 +187,10 @@ impl Space for Saturated<'_> {
         if !self.domain.stability || floor == f64::NEG_INFINITY {
             return None;
         }
+        let own = self.domain.own_at_most(&from.layout, step);
+        if own < floor {
+            return Some(Width { lower: f64::NEG_INFINITY, upper: own });
+        }
         if let Some(margin) = self.carried().margin(&from.layout, step, floor) {
             return Some(Width { lower: margin, upper: f64::INFINITY }.in_series(self.start));
         }
@@ -181,6 +198,15 @@ impl Space for Saturated<'_> {
         // What is left open there is asked for itself.
         let is_decided = worst.margin.lower >= floor || worst.is_out(floor);
         is_decided.then(|| width(worst.margin).in_series(self.start))
+    }
+
+    fn glance(&self, from: &State, action: &Action, to: &State, floor: f64) -> Option<f64> {
+        let Action::Move(step) = *action else { return None };
+        if !self.domain.stability || floor == f64::NEG_INFINITY {
+            return None;
+        }
+        let own = self.domain.own_at_most(&from.layout, step);
+        Some(if own < floor { own } else { self.domain.decides_settled(&to.layout, &from.layout, floor).margin.upper })
     }
 
     fn remaining_cost(&self, state: &State) -> Option<u32> {

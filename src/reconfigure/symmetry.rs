@@ -82,14 +82,19 @@ impl Symmetry {
         images.min().expect("the identity is an image")
     }
 
-    /// Of all images of a move and the layout that it begins in, the least.
+    /// Of all images of a move and the layout that it begins in, the one in which the modules that stay are least: they are
+    /// where they are in all moves of one module over the same others.
     pub fn kind_of_move(&self, layout: &Layout, step: Move) -> (Layout, Move) {
         let images = self.images.iter().map(|image| {
-            let (layout, corner) = self.class(&image.layout(layout));
-            let from = displaced(image.cell(step.from), corner.map(|c| -c));
-            (layout, Move { from, motion: image.motion(step.motion), ..step })
+            let (whole, from) = (image.layout(layout), image.cell(step.from));
+            let staying = whole.placed().iter().copied().filter(|placed| placed.cell != from);
+            let (rest, corner) = self.class(&Layout::new(staying.collect()));
+            let back = corner.map(|c| -c);
+            let step = Move { from: displaced(from, back), motion: image.motion(step.motion), ..step };
+            (rest, step, whole, back)
         });
-        images.min().expect("the identity is an image")
+        let (_, step, whole, back) = images.min().expect("the identity is an image");
+        (whole.displaced(back), step)
     }
 
     /// The lowest coordinates along the axes that make no difference, 0 along others.

@@ -3,7 +3,7 @@
 use planners::{Reversible, Search, Space};
 use proptest::prelude::*;
 
-use crate::reconfigure::assembly::Assembler;
+use crate::reconfigure::assembly::{Assembler, assemble};
 use crate::reconfigure::baseline::Baseline;
 use crate::reconfigure::carried::Carried;
 use crate::reconfigure::course::Course;
@@ -13,6 +13,7 @@ use crate::reconfigure::moves::Move;
 use crate::reconfigure::plan::{Objective, Outcome};
 use crate::reconfigure::problem::Problem;
 use crate::reconfigure::saturated::{Action, Saturated, kept};
+use crate::reconfigure::shares::Slides;
 use crate::reconfigure::{MARGIN_TOLERANCE, Options};
 use crate::robot::Cell;
 use crate::statics::{Bracket, Question, assess};
@@ -40,6 +41,9 @@ proptest! {
                 let Action::Move(_) = transition.action else { continue };
                 let value = space.certify(&start, &transition.action, &transition.to, f64::NEG_INFINITY);
                 for &floor in &floors {
+                    let seen = space.glance(&start, &transition.action, &transition.to, floor).expect("a move can be looked at");
+                    let slack = MARGIN_TOLERANCE * value.lower.abs().max(1.0);
+                    assert!(seen >= value.lower - slack, "{seen} at a glance, {value:?}");
                     let Some(bounds) = space.decide(&start, &transition.action, &transition.to, floor) else { continue };
                     assert!(bounds.lower >= floor || bounds.upper < floor, "{bounds:?} at {floor}");
                     let slack = MARGIN_TOLERANCE * value.lower.abs().max(1.0);
@@ -75,6 +79,57 @@ proptest! {
                 assert!((there.lower - back.lower).abs() <= 1e-5, "{there:?} there, {back:?} back");
             }
         });
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    /// The moves of the space are those through which the robot holds together, by its connections one by one.
+    #[test]
+    fn pieces_tell_what_holds_together(filled in polycube(9)) {
+        in_space(&filled, |space| {
+            let start = space.start();
+            let state = cubes(&filled, 1);
+            let problem = Problem::new(&state, &goal(state.clone())).unwrap();
+            let domain = Domain::new(&problem, true);
+            let layout = start.layout();
+            let holds = |step: &Move| {
+                let bonds = kept(layout, *step);
+                domain.is_connected(layout, &bonds) && domain.stays_connected(layout, &bonds, *step)
+            };
+            let together: Vec<Move> = domain.moves(layout).into_iter().filter(holds).collect();
+            let moves = space.transitions(&start).into_iter().filter_map(|transition| match transition.action {
+                Action::Move(step) => Some(step),
+                Action::Finish(_) => None,
+            });
+            assert_eq!(moves.collect::<Vec<_>>(), together);
+        });
+    }
+}
+
+/// Slides over several modules hold as well as over one: what they share is all that one has.
+#[test]
+fn a_slide_is_as_strong_half_way() {
+    // A cube on top of a row, one beneath it (held from above), and one at its side.
+    for own in [[0, 0, 1], [0, 0, -1], [0, 1, 0]] {
+        let along: Vec<Cell> = (0..3).map(|x| [x, 0, 5]).chain([[0, own[1], 5 + own[2]]]).collect();
+        let state = cubes(&along, 1);
+        let problem = Problem::new(&state, &goal(state.clone())).unwrap();
+        let domain = Domain::new(&problem, true);
+        let layout = problem.start_layout();
+        let from = [0, own[1], 5 + own[2]];
+        let class = layout.placed()[layout.at(from).unwrap()].class;
+        let mut slides = Slides::default();
+        let slid: Vec<_> = domain.moves(layout).into_iter().filter(|step| step.from == from).collect();
+        let held: Vec<f64> =
+            slid.iter().filter_map(|&step| slides.of(&problem, layout, class, step)).map(|held| held.margin).collect();
+        assert_eq!(held.len(), 1, "one of its moves is a slide: {slid:?}");
+        // Of the whole face of one module, by the oracle.
+        let mut pair = cubes(&[[0, 0, 5], from], 1);
+        pair.environment.ground = None;
+        let whole = assess(&assemble(&pair).structure, Question::VALUE).unwrap().margin();
+        assert!((held[0] - whole.lower).abs() <= 1e-5, "{held:?} against {whole:?}");
     }
 }
 
