@@ -85,9 +85,9 @@ fn at_required(natural: First) -> [Try; 4] {
     [attempt((on, natural), 1), attempt((back, natural), 1), attempt((on, other), 3), attempt((back, other), 3)]
 }
 
-/// The only attempt at a larger margin, in the manner that led to plans.
-const fn at_larger(manner: Manner) -> Try {
-    Try { manner, patience: 4, effort: 150 }
+/// Attempts at a larger margin: in the manner that led to plans, and in the other order.
+fn at_larger((direction, first): Manner) -> [Try; 2] {
+    [first, first.other()].map(|first| Try { manner: (direction, first), patience: 4, effort: 75 })
 }
 
 /// Decomposes a problem whose start and goal are known to be connected and stable enough.
@@ -127,7 +127,7 @@ pub fn decompose(
     let at_required = at_required(First::natural(&problem.start().environment));
     let mut manner = at_required[0].manner;
     while let Some(floor) = levels.next(&ways) {
-        let larger = [at_larger(manner)];
+        let larger = at_larger(manner);
         let tries = if levels.is_required() { &at_required[..] } else { &larger };
         let mut is_attained = false;
         // What one way found, the other one uses.
